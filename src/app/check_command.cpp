@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "base/whole.h"
 #include "pipeline/accuracy.h"
+#include "pipeline/body_look.h"
 #include "pipeline/cost.h"
 #include "pipeline/run_record.h"
 
@@ -132,6 +133,11 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
                                   cost.tool_give, 100 * cost.tool_give / thickness, thickness));
     }
     for (const std::string& strength : cost.warning.strength) line("strength", strength);
+    for (std::size_t b = 0; b < scene.body.size(); ++b) {
+        if (!hides_material(scene.body[b], input[b].mesh)) continue;
+        line("look", (b == 0 ? "" : scene.body[b].name + ": ") +
+                         "as in its mesh file; look = \"material\" shows that of its material");
+    }
     line("stages", std::to_string(scene.stage.size()));
     for (const MachinePlace& place : cost.place) {
         const bool is_later = &place != &cost.place.front();

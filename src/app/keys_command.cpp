@@ -109,7 +109,7 @@ void add_keys_command(CLI::App& app, Action& chosen) {
                                     "  swage keys --machine\n"
                                     "  swage keys --machine expressions\n",
                                     chosen, [] { return keys(given); });
-    command->add_option("word", given.word, "A section or a key")->type_name("WORD");
+    command->add_option("word", given.word, "a section or a key")->type_name("WORD");
     command->add_flag("--machine", given.machine,
                       "list the keys of machine files instead, and what their expressions can use");
     command->add_flag("--json", given.json, "print JSON");

@@ -149,7 +149,7 @@ void add_machines_command(CLI::App& app, Action& chosen) {
                     "  swage machines twist --json\n"
                     "  swage machines machines/press.toml\n",
                     chosen, [] { return machines(given); });
-    command->add_option("name", given.name, "A machine, or the file of one")->type_name("NAME");
+    command->add_option("name", given.name, "a machine, or the file of one")->type_name("NAME");
     add_assets_option(*command, given.assets);
     command->add_flag("--json", given.json, "print JSON");
 }

@@ -36,7 +36,9 @@ WorkFrame place_work_frame(const Aggregate& matter, WorldAxis axis, WorldAxis up
     }
     if (up == WorldAxis::automatic && !upright && x.y() != 0) y = Vec3::UnitZ();
     if (x.cross(y).norm() == 0) {
-        fail(ExitCode::scene, "up = \"{}\" lies along the work-piece's axis ({}); choose another",
+        fail(ExitCode::scene,
+             "up = \"{}\" lies along the work-piece's axis ({}); choose another up, or an axis "
+             "across it",
              name_of(up), axis == WorldAxis::automatic ? "its longest side" : name_of(axis));
     }
     Mat3 axes;

@@ -7,6 +7,8 @@ namespace {
 
 constexpr double kMetalRoughness = 0.35;
 
+bool says_none(const TriMesh& mesh) { return mesh.material.empty() && mesh.position_color.empty(); }
+
 bool is_metal(const SurfaceMaterial& look) { return look.metallic > 0.5; }
 
 }  // namespace
@@ -24,8 +26,11 @@ std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& me
         }
         return look;
     }
-    const bool says_none = mesh.material.empty() && mesh.position_color.empty();
-    return body.wears_material || says_none ? body.look : std::nullopt;
+    return body.wears_material || says_none(mesh) ? body.look : std::nullopt;
+}
+
+bool hides_material(const BodySpec& body, const TriMesh& mesh) {
+    return body.look && !body.color && !body.wears_material && !says_none(mesh);
 }
 
 }  // namespace swage

@@ -11,4 +11,8 @@ namespace swage {
 // nothing or the scene asks for it. None: as the mesh says.
 std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& mesh);
 
+// Whether the mesh says how it looks, and the scene does not, so that its material's look is not
+// seen.
+bool hides_material(const BodySpec& body, const TriMesh& mesh);
+
 }  // namespace swage

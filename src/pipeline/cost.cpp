@@ -99,7 +99,10 @@ std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<InputMe
     std::vector<NamedMatter> named;
     for (std::size_t b = 0; b < matter.size(); ++b) {
         const BodySpec& body = scene.body[b];
-        named.push_back({body.name, &matter[b], box_at_start(body.start, input[b].to_mold())});
+        const bool is_mesh = scene.skin.kind != SkinKind::boundary;
+        const TriMesh& shown = is_mesh ? input[b].mesh : input[b].to_mold();
+        named.push_back(
+            {body.name, &matter[b], box_at_start(body.start, input[b].to_mold(), shown)});
     }
     return named;
 }
@@ -107,12 +110,13 @@ std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<InputMe
 bool moves(const StageSpec& stage) { return stage.sim.solver != Solver::quasistatic; }
 
 // As much as this many cells of the work-piece pressed as tools do.
-double softest_give(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
+double softest_give(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                    const std::vector<Aggregate>& matter) {
     double most = 0;
     for (const StageSpec& stage : scene.stage) {
         if (stage.machine.tool.empty()) continue;
         const double share =
-            matter.empty() ? 1 : stiffness_share_at_tools(stage, named(scene, matter));
+            matter.empty() ? 1 : stiffness_share_at_tools(stage, named(scene, input, matter));
         for (const ToolSpec& tool : stage.machine.tool) {
             const double asked = stage.sim.stiffness_of_contacts(tool.contact_stiffness);
             most = std::max(most, 1 / (asked * share));
@@ -155,7 +159,7 @@ std::string what_time_hangs_on(const SceneSpec& scene) {
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
             const RunOptions& options, const std::vector<Aggregate>& matter, long equilibria) {
     cost.frames = frame_count(scene);
-    cost.tool_give = softest_give(scene, matter);
+    cost.tool_give = softest_give(scene, input, matter);
     cost.steps = cost.seconds = {};
     double way = 0;  // [byte], of the machine's, one after another
     WorkLoad load{.particles = cost.mold.particles,

@@ -64,7 +64,8 @@ void StageCurves::pass(const std::vector<ToolLoad>& loads) {
         const Vec3 turn = turn_between(way.pose, now);
         const double angle = turn.norm();
         if (way.turn_axis.isZero() && angle > 1e-12) {
-            way.turn_axis = forward(turn / angle);
+            const std::optional<TurnAxis>& axis = load_[n].axis;
+            way.turn_axis = axis ? now.turn(axis->along) : forward(turn / angle);
         }
         way.turn += turn.dot(way.turn_axis) < 0 ? -angle : angle;
         way.travel += (now.translation - way.pose.translation).norm();

@@ -186,10 +186,10 @@ FrameStoreWriter::FrameStoreWriter(const fs::path& file, const std::vector<SkinF
 }
 
 FrameStoreWriter::FrameStoreWriter(const fs::path& file, const fs::path& from,
-                                   const MotionMark& mark)
+                                   const MotionMark& mark, bool stays)
     : file_(file),
-      written_(from == file ? temporary_for(file) : from),
-      is_kept_(from != file),
+      written_(from == file || stays ? temporary_for(file) : from),
+      is_kept_(from != file && !stays),
       mark_(mark) {
     FileHandle there(::open(from.c_str(), (is_kept_ ? O_RDWR : O_RDONLY) | O_CLOEXEC));
     const auto passed = there.is_open() ? pass_records(there.id(), mark, false) : std::nullopt;

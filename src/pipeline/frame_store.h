@@ -54,10 +54,10 @@ class FrameStoreWriter {
     // Writes to a temporary beside `file` until `finish`. `fields`: that bodies have in each frame.
     explicit FrameStoreWriter(const std::filesystem::path& file,
                               const std::vector<SkinField>& fields = {});
-    // Goes on behind what holds_motion there: in `from` itself, where that was kept, or in a copy
-    // where it is `file`.
+    // Goes on behind what holds_motion there: in `from` itself, or in a copy where it is `file` or
+    // is to stay as it is.
     FrameStoreWriter(const std::filesystem::path& file, const std::filesystem::path& from,
-                     const MotionMark& mark);
+                     const MotionMark& mark, bool stays = false);
     ~FrameStoreWriter();  // removes what was neither finished nor kept
     FrameStoreWriter(const FrameStoreWriter&) = delete;
     FrameStoreWriter& operator=(const FrameStoreWriter&) = delete;

@@ -14,8 +14,8 @@ std::vector<Pose> part_poses(const Drive& drive) {
 
 MotionRecorder::MotionRecorder(const std::filesystem::path& file, const std::filesystem::path& from,
                                const MotionMark& mark, const std::vector<WorkPiece>& bodies,
-                               const std::vector<int>& skins)
-    : writer_(file, from, mark), machine_id_(writer_.machine_count() - 1) {
+                               const std::vector<int>& skins, bool stays)
+    : writer_(file, from, mark, stays), machine_id_(writer_.machine_count() - 1) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         skin_.push_back({bodies[b].skin, skins.at(b)});
     }

@@ -19,9 +19,10 @@ class MotionRecorder {
                             const std::vector<SkinField>& fields = {})
         : writer_(file, fields) {}
     // Goes on behind the mark, where the bodies had these skins, at the machine that was last.
+    // `stays`: as FrameStoreWriter has it.
     MotionRecorder(const std::filesystem::path& file, const std::filesystem::path& from,
                    const MotionMark& mark, const std::vector<WorkPiece>& bodies,
-                   const std::vector<int>& skins);
+                   const std::vector<int>& skins, bool stays = false);
     // From its first frame on and as long as it lives, frames are at stake (pipeline/interrupt.h).
     ~MotionRecorder();
 

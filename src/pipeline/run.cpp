@@ -37,7 +37,7 @@ bool stands(const Json& record, const SceneSpec& scene, const RunDirectory& dire
     try {
         const FrameStore whole(directory.store());
     } catch (const Error& error) {
-        log_warning("{}, so the run begins anew", error.what());
+        log_warning("{}", error.what());  // how much of it can be gone on from is told then
         return false;
     }
     const std::filesystem::path missing =

@@ -45,7 +45,9 @@ void link_products(const fs::path& root, const fs::path& to) {
         std::error_code error;
         using enum fs::copy_options;
         fs::copy(root / name, to / name, recursive | create_hard_links, error);
-        if (error) fs::copy(root / name, to / name, recursive | overwrite_existing);
+        if (!error) continue;
+        fs::remove_all(to / name);  // some may be linked
+        fs::copy(root / name, to / name, recursive);
     }
     std::vector<fs::path> locks;  // of who draws there, which hang on the file
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(to)) {

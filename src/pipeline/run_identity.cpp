@@ -83,7 +83,10 @@ void add_said(const std::vector<Said>& there, const std::vector<Said>& here,
         const auto [then, now] = both;
         if (key == kKeepsStages || (then && now && then->value == now->value)) continue;
         const auto shown = [](const Said* said) { return said ? said->shown : "not there"; };
-        other.push_back(fmt::format("{} is {} now, {} then", key, shown(now), shown(then)));
+        // What is long is cut off.
+        other.push_back(shown(now) == shown(then)
+                            ? fmt::format("{} differs", key)
+                            : fmt::format("{} is {} now, {} then", key, shown(now), shown(then)));
     }
     const std::size_t more = other.size() - std::min(other.size(), kTold);
     other.resize(other.size() - more);
@@ -143,7 +146,7 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
         found.push_back(fmt::format("another build of swage {} made it ({}, this is {})",
                                     there.version, there.build, here.build));
     }
-    add_said(there.said, here.said, found);
+    if (!there.said.empty()) add_said(there.said, here.said, found);  // an older build said nothing
     for (const RunInput& input : here.input) {
         if (is_said(input)) continue;
         const RunInput* old = find_role(there, input.role);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "pipeline/build_name.h"
 #include "scene/document.h"
 

@@ -107,7 +107,9 @@ std::string said_of_stages(const SceneSpec& scene, std::size_t stages) {
     for (std::size_t s = 0; s < stages; ++s) {
         all += fmt::format("{:a} s\n", scene.duration_of(scene.stage[s]));
     }
-    all += scene.output.meshes_per_frame ? "meshes\n" : "";
+    if (scene.output.meshes_per_frame) {  // whose names count from it
+        all += fmt::format("meshes from {}\n", scene.render.first_frame);
+    }
     for (const SkinField field : scene.output.fields) all += words_of(field).name + "\n"s;
     return all;
 }
@@ -277,7 +279,9 @@ Json record_of_run(const fs::path& run) {
     std::error_code error;
     if (!fs::exists(run, error)) fail(ExitCode::output, "{}: no such folder", run.string());
     std::optional<Json> record = read_record(RunDirectory::record_in(run));
-    if (!record || record->at("state") == RunState::begun)
+    // One that goes on from an earlier one has its frames already.
+    const bool has_frames = fs::exists(RunDirectory::store_in(run), error);
+    if (!record || (record->at("state") == RunState::begun && !has_frames))
         fail(ExitCode::output, "{}: is not a finished run of swage", run.string());
     return *std::move(record);
 }

@@ -132,9 +132,9 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         record["bodies"][b]["matter"] = reached.matter[b];
     }
     const auto recorder =
-        kept ? std::make_unique<MotionRecorder>(directory.store(), kept->motion, motion,
-                                                mark ? mark->bodies : reached.bodies,
-                                                mark ? mark->skin : reached.skin)
+        kept ? std::make_unique<MotionRecorder>(
+                   directory.store(), kept->motion, motion, mark ? mark->bodies : reached.bodies,
+                   mark ? mark->skin : reached.skin, directory.is_changed())
              : std::make_unique<MotionRecorder>(directory.store(), scene.output.fields);
     int kept_stages = reached.stages;          // that are to be gone on from
     int kept_frame = recorder->frame_count();  // the last of these
@@ -192,8 +192,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
                  stages, directory.is_changed() ? ": " + directory.change() : "");
     } else if (kept) {
         log_info("goes on after stage {} of {}, frame {}{}", reached.stages, stages,
-                 recorder->frame_count(),
-                 directory.is_changed() ? ": " + directory.change() : "");
+                 recorder->frame_count(), directory.is_changed() ? ": " + directory.change() : "");
     }
     Progress progress("simulate", frame_count(scene) - 1, std::max(0, recorder->frame_count() - 1));
     // Of what was there before nothing is lost for it.

@@ -329,7 +329,9 @@ class StageRun {
     }
     void hold_skins() {
         const auto lap = context_.watch.lap("skin");
-        for (WorkPiece& body : bodies_) hold_skin(body);
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            if (cuts_[b]) hold_skin(bodies_[b]);
+        }
     }
 
     void dress(int number) {

@@ -113,7 +113,7 @@ std::vector<int> parent_shells(const TriMesh& now, const std::vector<Vec3>& here
 std::vector<Vec3> carried_places(const TriMesh& now, const std::vector<Vec3>& here,
                                  const TriMesh& other, const std::vector<Vec3>& there) {
     std::vector<Vec3> carried = here;
-    if (other.triangle.empty()) return carried;
+    if (now.triangle.empty() || other.triangle.empty()) return carried;
     const Components own = surface_components(now), others = surface_components(other);
     const std::vector<int> parent = parent_shells(now, here, own, other, there, others),
                            child = parent_shells(other, there, others, now, here, own);

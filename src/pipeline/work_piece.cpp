@@ -240,10 +240,10 @@ struct StartPlace {
 
 }  // namespace
 
-Box box_at_start(const StartSpec& start, const TriMesh& mesh) {
+Box box_at_start(const StartSpec& start, const TriMesh& mesh, const TriMesh& shown) {
     const StartPlace place(start, mesh);
     Box box;
-    for (const Vec3& point : mesh.position) box.grow(place(point));
+    for (const Vec3& point : shown.position) box.grow(place(point));
     return box;
 }
 
@@ -370,7 +370,10 @@ void follow_matter(WorkPiece& piece) {
 
 int show_matter(WorkPiece& piece, bool has_parted) {
     int open = 0;
-    if (has_parted && !piece.is_parted && is_broken(piece.matter)) hold_skin(piece);
+    if (has_parted && !piece.is_parted && is_broken(piece.matter)) {
+        if (keeps_volume(piece)) hold_skin(piece);
+        piece.is_parted = true;
+    }
     if (has_parted && is_made_anew(piece)) lay_boundary(piece);
     if (has_parted && !piece.look) open = part_skin(piece);
     follow_matter(piece);

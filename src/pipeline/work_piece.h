@@ -81,8 +81,8 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
 
 // Turns about the middle of the box of the mesh that it was molded from, moves and sets in motion.
 void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matter);
-// The box of the mesh where it is then.
-Box box_at_start(const StartSpec& start, const TriMesh& mesh);
+// The box of its skin, as `shown`, where it is then.
+Box box_at_start(const StartSpec& start, const TriMesh& mesh, const TriMesh& shown);
 
 // A new representation of the work-piece as it is now, without strain, of cells of the same size,
 // as hard as it has become and as fast as it goes.

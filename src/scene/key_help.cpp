@@ -225,8 +225,8 @@ const std::vector<KeyHelp>& scene_key_help() {
          "files beside each still, for compositing, without blending at edges: depth (EXR, metres "
          "along the view), matte (PNG, a colour for each body, tool and the ground, which "
          "mattes.json names), normal (EXR, along the world's axes), motion (EXR, pixels to the "
-         "next "
-         "still, forward, and the one before, backward; y up), piece (PNG, as matte, a colour for "
+         "next still, forward, and the one before, backward; y up), piece (PNG, as matte, a colour "
+         "for "
          "each piece of a body, which pieces.json names); and antialiased as the still is, beauty "
          "(EXR, its light before the tone curve, premultiplied)"},
         {"[render]", "gl", "graphics library"},

@@ -177,11 +177,8 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
             continue;
         }
         const ContactWay::Held& other = held[pair_[w].back];
-        const double ends = held_by_both(own.now, other.now),
-                     turns = held_by_both(own.now + own.turned, other.now + other.turned),
-                     begins = held_by_both(own.now + own.turned + own.gone,
-                                           other.now + other.turned + other.gone);
-        way_[w].push(share_of(own.now, other.now), 0.5 * (begins - turns), 0.5 * (turns - ends));
+        const ContactHeld both = held_by_both(own, other);
+        way_[w].push(share_of(own.now, other.now), 0.5 * both.gone, 0.5 * both.turned);
     }
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().find_springs();

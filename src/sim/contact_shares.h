@@ -28,8 +28,20 @@ inline double share_of(double one, double other) {
     return (0.5 * part * square(part / mean) / mean + kLeastOfBoth) / (1 + 2 * kLeastOfBoth);
 }
 
+// What a way has at the most, where the other holds nothing.
+inline double most_share() { return share_of(1, 0); }
+
 inline double held_by_both(double one, double other) {
     return share_of(one, other) * one + share_of(other, one) * other;
+}
+
+// Of both ways together.
+inline ContactHeld held_by_both(const ContactHeld& one, const ContactHeld& other) {
+    const double ends = held_by_both(one.now, other.now),
+                 turns = held_by_both(one.now + one.turned, other.now + other.turned),
+                 begins = held_by_both(one.now + one.turned + one.gone,
+                                       other.now + other.turned + other.gone);
+    return {ends, begins - turns, turns - ends};
 }
 
 }  // namespace swage

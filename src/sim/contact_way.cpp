@@ -341,8 +341,9 @@ void ContactWay::keep_more(double energy) {
 
 void ContactWay::add_stiffness(std::vector<double>& stiffness) const {
     const SurfacePoints& points = from_->points();
+    const double share = is_own() ? most_share() : share_;  // a body's own go by the pair of boxes
     for (const Contact& contact : list_.contact) {
-        const double k = share_ * stiffness_[contact.point];
+        const double k = share * stiffness_[contact.point];
         const auto by = points.carriers(static_cast<std::size_t>(contact.point));
         for (int c = 0; c < 8; ++c) stiffness[by.corner[c]] += k * std::abs(by.weight[c]);
         // Until candidates are found anew the place may move by half a cell.

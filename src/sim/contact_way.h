@@ -223,10 +223,11 @@ class ContactWay {
     double gone_ = 0;                                        // Held::gone, of points, so far [J]
     double broken_ = 0, turned_ = 0;                         // push()
     double kept_ = 0;                                        // kept()
-    OwnShares own_;                                          // of a body with itself, as are
+    // Of a body with itself; the last is in the place of gone_.
+    OwnShares own_;
     std::vector<OwnSpot> own_spot_{};
-    std::vector<Held> own_held_{};       // of each contact
-    std::vector<OwnGone> own_gone_{};    // and in gone_'s place
+    std::vector<Held> own_held_{};  // of each contact
+    std::vector<OwnGone> own_gone_{};
     ContactList list_, spare_{};         // the spare one keeps its room for the next search
     std::vector<Meeting> meeting_{};     // of each contact
     std::vector<ContactMemory> next_{};  // to commit

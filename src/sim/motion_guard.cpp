@@ -77,7 +77,7 @@ std::string advice(Solver solver) {
     }
     const std::string shorter =
         solver == Solver::implicit_steps ? "use more frames, " : "lower step_safety, ";
-    return shorter + rest + ", or use solver = \"quasistatic\" if one body is machined";
+    return shorter + rest + ", or use solver = \"quasistatic\" if only one body is machined";
 }
 
 std::string place(const Vec3& x) {

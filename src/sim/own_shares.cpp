@@ -181,13 +181,10 @@ ContactHeld OwnShares::find() {
         const auto& [one, other] = pair.held;
         pair.share[0] = share_of(one.now, other.now);
         pair.share[1] = share_of(other.now, one.now);
-        const double ends = held_by_both(one.now, other.now),
-                     turns = held_by_both(one.now + one.turned, other.now + other.turned),
-                     begins = held_by_both(one.now + one.turned + one.gone,
-                                           other.now + other.turned + other.gone);
-        all.now += ends;
-        all.gone += begins - turns;
-        all.turned += turns - ends;
+        const ContactHeld both = held_by_both(one, other);
+        all.now += both.now;
+        all.gone += both.gone;
+        all.turned += both.turned;
     }
     for (std::size_t m = 0; m < mixed_.size(); ++m) {
         double share = 0;

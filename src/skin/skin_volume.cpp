@@ -13,14 +13,29 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // cells
-constexpr double kOpen = 1e-9;       // of the area: faces of a closed surface sum up to nothing
 constexpr double kOneFace = 0.02;    // sin^2 of how far around a particle one face may be bent
 
 using Weights = std::array<double, 8>;
 
+// Whether each edge is gone along as often one way as the other: of a surface with a rim that sums
+// up to nothing by a chance of 2^-64.
+bool is_closed(const std::vector<Corners>& triangles) {
+    std::uint64_t sum = 0;
+    const auto add = [&](int from, int to) {
+        std::uint64_t edge =
+            std::uint64_t(std::min(from, to)) << 32 | std::uint32_t(std::max(from, to));
+        edge = (edge ^ edge >> 30) * 0xbf58476d1ce4e5b9;  // the mixing of splitmix64
+        edge = (edge ^ edge >> 27) * 0x94d049bb133111eb;
+        edge ^= edge >> 31;
+        sum += from < to ? edge : -edge;
+    };
+    for (const auto& [a, b, c] : triangles) add(a, b), add(b, c), add(c, a);
+    return sum == 0;
+}
+
 // And each vertex's part of the area.
 struct Surface {
-    double volume = 0, size = 0;
+    double volume = 0;
     std::vector<Vec3> area;
 
     Surface(const std::vector<Corners>& triangles, const std::vector<Vec3>& position)
@@ -28,14 +43,8 @@ struct Surface {
         for (const Corners& t : triangles) {
             const Vec3 twice = area_vector(position, t);
             volume += twice.dot(position[t[0]] - position[0]) / 6;
-            size += 0.5 * twice.norm();
             for (int n = 0; n < 3; ++n) area[t[n]] += twice / 6;
         }
-    }
-    bool is_closed() const {
-        Vec3 sum = Vec3::Zero();
-        for (const Vec3& part : area) sum += part;
-        return sum.norm() <= kOpen * size;
     }
 };
 
@@ -105,17 +114,14 @@ std::vector<Vec3> ways_in(const Mount& mount, const Aggregate& matter, const Sur
 }  // namespace
 
 std::optional<double> enclosed_volume(const TriMesh& skin, const std::vector<Vec3>& position) {
-    if (position.empty()) return {};
-    const Surface surface(skin.triangle, position);
-    if (!surface.is_closed()) return {};
-    return surface.volume;
+    if (position.empty() || !is_closed(skin.triangle)) return {};
+    return Surface(skin.triangle, position).volume;
 }
 
 void enclose_volume(const TriMesh& skin, const Mount& mount, const Aggregate& matter, double volume,
                     std::vector<Vec3>& position) {
-    if (mount.kind != SkinKind::mount || position.empty()) return;
+    if (mount.kind != SkinKind::mount || position.empty() || !is_closed(skin.triangle)) return;
     const Surface first(skin.triangle, position);
-    if (!first.is_closed()) return;
     const std::vector<Vec3> way = ways_in(mount, matter, first);
     const std::vector<Vec3> rounded = position;
     double share = 0;

@@ -143,6 +143,16 @@ TEST_CASE("what is drawn may be another with no stage worked, what frames hold m
     }
 }
 
+TEST_CASE("meshes of every frame are named as a new first frame asks") {
+    const DoneRun done(kMesh + metal("") + "[output]\nmeshes_per_frame = true\n",
+                       {kAtRest[0], kAtRest[2]});
+    put_text(done.scene,
+             text_of(done.head + "[render]\nfirst_frame = 1001\n", {kAtRest[0], kAtRest[2]}));
+    const Outcome outcome = done.go_on();
+    INFO(outcome.err);
+    CHECK(outcome.code == 8);
+}
+
 TEST_CASE("a run that is replaced stays whole until the new one is") {
     const DoneRun done(kMesh + metal("") + kOutput, kAtRest);
     const auto before = files_below(done.out);

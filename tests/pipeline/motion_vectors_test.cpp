@@ -175,6 +175,14 @@ TEST_CASE("a skin that is another in the next frame moves as its places do") {
     }
 }
 
+TEST_CASE("a skin without faces, or of which none was before, has nowhere to move to") {
+    const TriMesh now = box();
+    TriMesh none = now;
+    none.triangle.clear();
+    CHECK(carried_places(none, none.position, now, now.position) == none.position);
+    CHECK(carried_places(now, now.position, none, none.position) == now.position);
+}
+
 TEST_CASE("faces of pieces that lay on each other move each with its own piece") {
     const TriMesh left = box_mesh(Vec3(-1, 0, 0), Vec3(0, 1, 1)),
                   right = box_mesh(Vec3(0, 0, 0), Vec3(0.6, 1, 1));

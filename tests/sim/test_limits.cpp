@@ -190,10 +190,10 @@ TEST_CASE("where a force jumps over its limit the way before that is kept, and t
 }
 
 TEST_CASE("a torque is that about the axis which a part turns about, wherever its frame stands") {
-    const LoadLimit limit{.of_torque = true, .axis = Vec3(0, 0, 1), .at = Vec3(-0.2, 0, 0)};
+    const LoadLimit limit{.of_torque = true, .axis = {Vec3(0, 0, 1), Vec3(-0.2, 0, 0)}};
     const Pose pose{turn_about(Vec3::UnitX(), kPi / 2), Vec3(3, 4, 5)};
-    const Vec3 force(7, -2, 11), torque(0.3, 0.4, 0.5), axis = pose.turn(limit.axis);
-    const Vec3 of_axis = pose * limit.at;
+    const Vec3 force(7, -2, 11), torque(0.3, 0.4, 0.5), axis = pose.turn(limit.axis.along);
+    const Vec3 of_axis = pose * limit.axis.at;
     const double about = (torque + (pose.translation - of_axis).cross(force)).dot(axis);
     CHECK(limit.borne(force, torque, pose) == Approx(std::abs(about)));
     CHECK(LoadLimit{}.borne(force, torque, pose) == Approx(force.norm()));

@@ -97,6 +97,14 @@ TEST_CASE("a skin that is open, and one by frames of four particles, has no volu
     open.skin.triangle.pop_back();
     CHECK_FALSE(enclosed_volume(open.skin, open.position));
     CHECK(open.enclose(.8) == 0);
+    // A tube is open too, though its faces sum up to nothing.
+    Cube tube(swell);
+    std::erase_if(tube.skin.triangle, [&](const Corners& t) {
+        const auto y = [&](int v) { return tube.skin.position[std::size_t(v)].y(); };
+        return std::abs(y(t[0]) + y(t[1]) + y(t[2])) > 1.5 - 1e-9;
+    });
+    REQUIRE(tube.skin.triangle.size() < Cube(swell).skin.triangle.size());
+    CHECK_FALSE(enclosed_volume(tube.skin, tube.position));
     Cube frame4(swell, SkinKind::frame4);
     CHECK(frame4.enclose(.8) == 0);
 }
