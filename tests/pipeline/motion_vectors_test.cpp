@@ -3,7 +3,6 @@
 #include "pipeline/motion_vectors.h"
 
 #include "geometry/box_mesh.h"
-#include "geometry/mesh_edit.h"
 #include "pipeline/surface_match.h"
 #include "skin/divided_mesh.h"
 #include "tests/render/drawn.h"
@@ -186,13 +185,9 @@ TEST_CASE("a skin without faces, or of which none was before, has nowhere to mov
 TEST_CASE("faces of pieces that lay on each other move each with its own piece") {
     const TriMesh left = box_mesh(Vec3(-1, 0, 0), Vec3(0, 1, 1)),
                   right = box_mesh(Vec3(0, 0, 0), Vec3(0.6, 1, 1));
-    const auto joined = [](const TriMesh& a, const TriMesh& b) {
-        TriMesh all = a;
-        append_mesh(all, b);
-        return all;
-    };
-    const TriMesh whole = box_mesh(Vec3(-1, 0, 0), Vec3(0.6, 1, 1)), parted = joined(left, right),
-                  swapped = joined(divide_edges(right, 0.3), divide_edges(left, 0.3));
+    const TriMesh whole = box_mesh(Vec3(-1, 0, 0), Vec3(0.6, 1, 1)),
+                  parted = test::together(left, right),
+                  swapped = test::together(divide_edges(right, 0.3), divide_edges(left, 0.3));
     const auto apart = [](const TriMesh& mesh) {
         const Components shells = surface_components(mesh);
         std::vector<Vec3> place = mesh.position;

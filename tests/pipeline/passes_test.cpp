@@ -5,7 +5,6 @@
 #include <set>
 
 #include "geometry/box_mesh.h"
-#include "geometry/mesh_edit.h"
 #include "pipeline/draw.h"
 #include "pipeline/json.h"
 #include "pipeline/render_directory.h"
@@ -14,6 +13,7 @@
 #include "tests/pipeline/scratch.h"
 #include "tests/render/drawn.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/meshes.h"
 
 using namespace swage;
 namespace fs = std::filesystem;
@@ -136,10 +136,8 @@ TEST_CASE(
     TwoStages run;
     run.settings.passes = {PicturePass::piece, PicturePass::matte};
     const auto halves = [](double apart) {
-        TriMesh mesh = box_mesh(Vec3(-0.5 - apart, 0, -0.5), Vec3(-apart, 1, 0.5));
-        const TriMesh right = box_mesh(Vec3(apart, 0, -0.5), Vec3(0.4 + apart, 1, 0.5));
-        append_mesh(mesh, right);
-        return mesh;
+        return test::together(box_mesh(Vec3(-0.5 - apart, 0, -0.5), Vec3(-apart, 1, 0.5)),
+                              box_mesh(Vec3(apart, 0, -0.5), Vec3(0.4 + apart, 1, 0.5)));
     };
     {
         FrameStoreWriter writer(run.store());
