@@ -72,7 +72,7 @@ int run_command_line(int argc, char** argv) {
             put_out(text.str());
             return exit_code(ExitCode::done);
         }
-        if (error.get_name() == "RequiredError") {
+        if (error.get_name() == "RequiredError" && app.remaining_size(true) == 0) {
             if (const std::string commands = commands_left_out(app); !commands.empty()) {
                 put_out(commands);
                 return exit_code(ExitCode::command_line);

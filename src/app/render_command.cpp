@@ -111,8 +111,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
         "  swage render renders/calf-line --frames 1 --no-film --no-tools\n"
         "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n"
         "  swage render renders/calf-line --passes depth,matte --out /tmp/layers\n"
-        "  swage render renders/calf-line --background transparent --passes beauty,motion,piece "
-        "--first-frame 1001\n"
+        "  swage render renders/calf-line --passes beauty,motion --first-frame 1001\n"
         "  swage render renders/wrench-stress --color stress --color-range 0 300e6\n"
         "  swage render renders/calf-line --camera-eye 0.5 0.2 0.4 --camera-target 0 0.1 0\n",
         chosen, [] { return render(given); });

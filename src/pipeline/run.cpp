@@ -29,8 +29,9 @@ bool stands(const Json& record, const SceneSpec& scene, const RunDirectory& dire
     if (!is_simulated(record) || !std::filesystem::exists(directory.store())) return false;
     const Json frames = record.value("frames", Json());
     const Json seconds = record.value("seconds", Json::object());
+    const Json plots = record.value("plots", Json::object());
     if (!frames.is_number_integer() || frames < 1 || frames > frame_count(scene) ||
-        !seconds.is_object()) {
+        !seconds.is_object() || !plots.is_object() || !record.value("stages", Json()).is_array()) {
         fail(ExitCode::output, "{}: is damaged; --fresh throws that run away",
              directory.record().string());
     }

@@ -103,7 +103,8 @@ TEST_CASE("a scene is read from standard input, its paths from the working direc
     // It is the same run as that of the file, and another once the scene is another.
     CHECK(run(name, "").err.find("already complete") != std::string::npos);
     put_text(scene, bytes_of(scene) + "# more\n");
-    CHECK(run("-", " <" + name).code == 8);
+    CHECK(run("-", " <" + name).err.find("already complete") != std::string::npos);
+    CHECK(run("- --set material.density=1234", " <" + name).code == 8);
     const Outcome wrong = in_shell("echo 'masch = 3' | swage check -", scratch.path());
     CHECK(wrong.code == 3);
     CHECK(wrong.err.find("stdin:1:1: unknown key \"masch\"") != std::string::npos);

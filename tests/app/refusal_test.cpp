@@ -52,7 +52,8 @@ TEST_CASE("a damaged record of a run is refused with 5, and --fresh makes anothe
     };
     for (const std::string& text :
          {std::string("{\"state\": \"complete\"}"), damaged("frames", "two"), damaged("frames", 0),
-          damaged("frames", 1e18), damaged("seconds", "two")}) {
+          damaged("frames", 1e18), damaged("seconds", "two"), damaged("plots", 3),
+          damaged("stages", nullptr)}) {
         put_text(record, text);
         const Outcome refused = again("--quiet");
         CHECK(refused.code == 5);
@@ -61,6 +62,15 @@ TEST_CASE("a damaged record of a run is refused with 5, and --fresh makes anothe
     }
     CHECK(again("--fresh").code == 0);
     CHECK(Json::parse(bytes_of(record)).at("frames") == 2);
+}
+
+TEST_CASE("what cannot be a run's folder is told to be that, not to be full") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 1);
+    const Outcome refused =
+        run_swage({"run", scene.string(), "--no-render", "--out", "/proc/none"});
+    CHECK(refused.code == 5);
+    CHECK_FALSE(says(refused, "disk"));
 }
 
 TEST_CASE("a run of another build is not taken for this one's, and can be drawn all the same") {

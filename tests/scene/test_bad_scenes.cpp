@@ -244,7 +244,7 @@ TEST_CASE("values out of range are refused with the range") {
          {"11:7: fps = \"24001/1001\" is no rate of films"}},
         {"first frame 0",
          render("first_frame = 0"),
-         {"11:15: first_frame = 0 is out of range: it has to be 1 to 1000000"}},
+         {"11:15: first_frame = 0 is out of range: it must be 1 to 1000000"}},
         {"no picture",
          render("size = [0, 0]"),
          {"11:8: size = [0, 0] is out of range: both must be 1 to 16384"}},
