@@ -123,7 +123,7 @@ void add_view_arguments(CLI::App& command, ViewArguments& given) {
         eye->excludes(command.get_option(other));
     }
     command.add_option("--camera-up", given.up, "axis that points upward in the pictures")
-        ->check(CLI::IsMember({"x", "y", "z"}));
+        ->check(CLI::IsMember(std::vector<std::string>(kUpName.begin() + 1, kUpName.end())));
     command
         .add_option("--light-azimuth", given.light_azimuth,
                     "direction of the lamp that casts the shadows, from the film's first view "

@@ -8,8 +8,9 @@ namespace swage {
 // The axes take turns.
 Quat drawn_from_up(Up up) {
     Mat3 turn = Mat3::Identity();
-    if (up == Up::z) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
-    if (up == Up::x) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    if (up == Up::z || up == Up::minus_z) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    if (up == Up::x || up == Up::minus_x) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    if (up >= Up::minus_x) turn.topRows<2>() *= -1;  // stood on its head
     return Quat(turn);
 }
 

@@ -231,12 +231,16 @@ class Exporter {
                         frames_.first + later(), rate, scene_.render.up == Up::z ? "Z" : "Y"));
     }
 
-    // USD knows no x that is upward: there the scene is turned, as pictures of it are.
+    // In USD y or z is upward: else the scene is turned, as pictures of it are.
     void write_turn(UsdText& out) const {
-        if (scene_.render.up != Up::x) return;
-        out.line(
-            "matrix4d xformOp:transform = ( (0, 1, 0, 0), (0, 0, 1, 0), (1, 0, 0, 0), (0, 0, 0, 1) "
-            ")\nuniform token[] xformOpOrder = [\"xformOp:transform\"]");
+        if (scene_.render.up == Up::y || scene_.render.up == Up::z) return;
+        const Mat3 turn = drawn_from_up(scene_.render.up).toRotationMatrix().array().round() + 0.0;
+        std::string rows;
+        for (int axis = 0; axis < 3; ++axis) {  // of row vectors
+            rows += fmt::format("({}, {}, {}, 0), ", turn(0, axis), turn(1, axis), turn(2, axis));
+        }
+        out.line("matrix4d xformOp:transform = ( " + rows +
+                 "(0, 0, 0, 1) )\nuniform token[] xformOpOrder = [\"xformOp:transform\"]");
     }
 
     void write_body(UsdText& out, std::size_t body, const std::string& materials) {

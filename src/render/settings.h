@@ -14,8 +14,9 @@
 namespace swage {
 
 // What is upward in the pictures; automatic is y where nobody says otherwise.
-enum class Up { automatic, x, y, z };
-inline constexpr std::array<const char*, 4> kUpName = {"auto", "x", "y", "z"};  // in that order
+enum class Up { automatic, x, y, z, minus_x, minus_y, minus_z };
+inline constexpr std::array<const char*, 7> kUpName = {"auto", "x",  "y", "z",
+                                                       "-x",   "-y", "-z"};  // in that order
 
 enum class GlProviderKind { automatic, osmesa, egl };
 inline constexpr std::array<const char*, 3> kGlName = {"auto", "osmesa", "egl"};  // in that order

@@ -180,8 +180,10 @@ void read_render(TableReader& table, RenderSettings& settings) {
                                   {"osmesa", GlProviderKind::osmesa},
                                   {"egl", GlProviderKind::egl}},
                                  settings.gl);
-    table.choice<Up>("up", {{"auto", Up::automatic}, {"x", Up::x}, {"y", Up::y}, {"z", Up::z}},
-                     settings.up);
+    std::vector<std::pair<std::string, Up>> ups;
+    for (std::size_t n = 0; n < kUpName.size(); ++n)
+        ups.emplace_back(kUpName[n], static_cast<Up>(n));
+    table.choice<Up>("up", ups, settings.up);
     read_passes(table, settings.passes);
     read_field_color(table, settings);
     table.quantity("field_of_view", Quantity::angle, inside(0, kPi), settings.field_of_view);

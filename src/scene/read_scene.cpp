@@ -31,7 +31,11 @@ Up up_of(const std::vector<StageSpec>& stages) {
     for (const StageSpec& stage : stages) {
         const Vec3& g = stage.sim.gravity;
         if (g == Vec3::Zero()) continue;
-        const Up own = -g.x() == g.norm() ? Up::x : -g.z() == g.norm() ? Up::z : Up::y;
+        Up own = Up::y;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::abs(g[axis]) != g.norm()) continue;
+            own = static_cast<Up>(static_cast<int>(g[axis] < 0 ? Up::x : Up::minus_x) + axis);
+        }
         if (found != Up::automatic && found != own) return Up::y;
         found = own;
     }

@@ -184,7 +184,7 @@ TEST_CASE("the camera in USD sees a body where stills show it") {
     MovedBar run;
     RenderSettings& render = run.scene.render;
     render.ground = render.tools = false;
-    const int look = GENERATE(0, 1, 2, 3);
+    const int look = GENERATE(0, 1, 2, 3, 4, 5);
     if (look == 0) {  // a flight round the body, in a picture that is higher than wide
         std::swap(render.width, render.height);
         render.field_of_view = 0.9;
@@ -195,6 +195,8 @@ TEST_CASE("the camera in USD sees a body where stills show it") {
     }
     if (look == 1) render.up = Up::z;
     if (look == 2) render.up = Up::x;
+    if (look == 4) render.up = Up::minus_y;
+    if (look == 5) render.up = Up::minus_z;
     if (look == 3) {
         render.up = Up::z;
         CameraKey key;

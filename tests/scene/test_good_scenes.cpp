@@ -269,6 +269,12 @@ TEST_CASE("a single gravity points against a stage's up, and the pictures have t
     CHECK(scene_with(y).render.up == Up::y);
     CHECK(scene_with(y).stage[0].sim.gravity == Vec3(0, -9.81, 0));
     CHECK(scene_with(z + y).render.up == Up::y);
+    const auto on = [&](const std::string& floor) {
+        return scene_with("[[stage]]\nmachine = \"floor\"\nup = \"" + floor +
+                          "\"\ngravity = \"9.81 m/s2\"\n");
+    };
+    CHECK(on("-y").render.up == Up::minus_y);
+    CHECK(on("-x").render.up == Up::minus_x);
     CHECK(scene_with(z + "[render]\nup = \"x\"\n").render.up == Up::x);
 }
 

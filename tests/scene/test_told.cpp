@@ -26,7 +26,7 @@ std::string said_of_scene(const std::string& stage, const std::vector<std::strin
                                  "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"copper\"\n"
                                  "[[stage]]\nmachine = \"bend\"\n" +
                                      stage),
-                   overrides, find_assets());
+                   overrides, test::shipped());
     REQUIRE(reading.scene);
     std::string all;
     for (const Said& one : reading.scene->said) all += one.key + "=" + one.value + "\n";
