@@ -136,7 +136,7 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     for (std::size_t b = 0; b < scene.body.size(); ++b) {
         if (!hides_material(scene.body[b], input[b].mesh)) continue;
         line("look", (b == 0 ? "" : scene.body[b].name + ": ") +
-                         "as in its mesh file; look = \"material\" shows that of its material");
+                         "as in the mesh file; look = \"material\" shows the material's");
     }
     line("stages", std::to_string(scene.stage.size()));
     for (const MachinePlace& place : cost.place) {

@@ -84,19 +84,19 @@ void add_run_command(CLI::App& app, Action& chosen) {
                       "draw no pictures; OpenGL is then not needed");
     CLI::Option* fresh = command->add_flag(
         "--fresh", given.fresh,
-        "throw away what an earlier run left in the directory, once this one is set up");
+        "delete what an earlier run left in the directory, once this one is set up");
     command
         ->add_flag(
             "--go-on", given.go_on,
-            "where the scene was changed since the run in the directory: keep the first stages, "
-            "up to the last that is the same and finished, and work the others anew. A run "
-            "that was done stands in DIR/replaced until this one is")
+            "if the scene has changed since the run in the directory: keep its first stages, up to "
+            "the last finished one that is unaffected, and run the others again. A complete run "
+            "stays in DIR/replaced until the new one is complete")
         ->excludes(fresh);
     command
         ->add_option("--keep-every", given.keep_every,
-                     "keep what a run that ends early goes on from after each frame that ends so "
-                     "long after the last (\"10 min\"; default: when that takes a fiftieth of "
-                     "the time, or less)")
+                     "save the state to resume from at the end of the first frame that comes this "
+                     "long after the last save (\"10 min\"; default: when saving takes at most a "
+                     "fiftieth of the time)")
         ->check([](const std::string& text) -> std::string {
             try {
                 return parse_quantity(text, Quantity::time) >= 0 ? "" : "is less than 0";

@@ -117,7 +117,7 @@ TEST_CASE("a tube's accuracy is told of the whole and of its wall, and as elasti
     CHECK(json.at("accuracy_of_whole").at("across_for_percent") == 12);
     CHECK(json.at("accuracy").at("across_for_percent").get<int>() > 90);
     // A mesh that says how it looks hides how its material does.
-    CHECK(text.find("  look         as in its mesh file; look = \"material\" shows") !=
+    CHECK(text.find("  look         as in the mesh file; look = \"material\" shows") !=
           std::string::npos);
     CHECK(
         run_swage({"check", scene.string(), "--set", "mesh.look=material"}).out.find("  look  ") ==
