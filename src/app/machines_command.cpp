@@ -6,6 +6,7 @@
 #include "app/table_text.h"
 #include "app/word_wrap.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "scene/catalogue.h"
 
@@ -35,7 +36,8 @@ std::string takes_text(const ParameterSpec& parameter) {
 }
 
 std::string machine_text(const MachineSpec& machine) {
-    std::string text = machine.name + ": " + machine.help + "\n  " + machine.file.string() + "\n\n";
+    std::string text =
+        wrapped(machine.name + ": " + machine.help, 0, 2) + "\n  " + machine.file.string() + "\n\n";
     std::size_t column = 0;
     for (const ParameterSpec& p : machine.parameter) column = std::max(column, p.name.size() + 4);
     for (const ParameterSpec& parameter : machine.parameter) {
@@ -50,8 +52,7 @@ std::string machine_text(const MachineSpec& machine) {
     for (const GripSpec& grip : machine.grip) parts.push_back("grip " + grip.name);
     for (const BladeSpec& blade : machine.blade) parts.push_back("blade " + blade.name);
     for (const LoadSpec& load : machine.load) parts.push_back("load " + load.name);
-    text += "\n  ";
-    for (const std::string& part : parts) text += (&part == &parts.front() ? "" : ", ") + part;
+    text += "\n  " + wrapped(joined(parts, ", "), 2, 2);
     text += machine.stops ? "\n  can stop at a force or torque ([[stage.limit]])"
                           : "\n  cannot stop at a force or torque";
     return text +

@@ -136,18 +136,24 @@ void RunDirectory::claim(const RunIdentity& identity, bool go_on) {
     if (found.empty()) return;
     const int kept = last_kept(static_cast<int>(stage_keys_.size()) - 1);
     const std::string change = joined(found, "; ");
-    if (go_on && kept > 0) {
+    if (go_on && (kept > 0 || fs::exists(stage_mark(), unknown))) {
+        if (fs::exists(fs::symlink_status(replaced(), unknown)) && !holds_run(replaced())) {
+            fail(ExitCode::foreign,
+                 "{}: is where the run that is there would be set aside, and is not a swage run: "
+                 "move it away, or choose another --out",
+                 replaced().string());
+        }
         change_ = change;
         return;
     }
+    const std::string first =
+        kept == 1 ? "its first stage" : fmt::format("its first {} stages", kept);
     fail(ExitCode::foreign,
-         "{}: belongs to another run: {}{}; choose another --out, or {}--fresh to throw that run "
-         "away",
+         "{}: belongs to another run: {}{}; choose another --out, or {}--fresh to throw {} away",
          root_.string(), change,
          go_on ? "; and it has kept no stage to go on from that is the same" : "",
-         kept > 0 ? fmt::format("--go-on to keep its first {}, or ",
-                                counted(std::size_t(kept), "stage", "stages"))
-                  : "");
+         kept > 0 ? "--go-on to keep " + first + ", or " : "",
+         holds_run(replaced()) ? "that run and the complete one in replaced/" : "that run");
 }
 
 // One that is not done is not worth it.
@@ -169,19 +175,26 @@ void RunDirectory::set_aside() const {
     log_info("the run that was there stands in {} until this one is done", replaced().string());
 }
 
+// Of the run, which `swage render` may be at.
+std::unique_ptr<FolderLock> RunDirectory::lock_of_drawing() const {
+    if (!fs::is_directory(drawn_again(root_))) return nullptr;
+    return std::make_unique<FolderLock>(drawn_again(root_));
+}
+
 void RunDirectory::begin(const std::vector<fs::path>& kept) {
-    has_begun_ = true;
-    if (!anew_ && !is_changed()) return;
-    {
-        std::optional<FolderLock> drawing;  // of the run, which `swage render` may be at
-        if (fs::is_directory(drawn_again(root_))) drawing.emplace(drawn_again(root_));
-        if (anew_) {
-            remove_products(root_);
-            remove_replaced();
-        } else {
-            set_aside();
-            remove_later_products(root_, kept);
-        }
+    if (anew_) {
+        has_begun_ = true;
+        const auto drawing = lock_of_drawing();
+        remove_products(root_);
+        remove_replaced();
+    } else if (is_changed()) {
+        const auto drawing = lock_of_drawing();
+        set_aside();  // before anything goes
+        has_begun_ = true;
+        remove_later_products(root_, kept);
+    } else {
+        has_begun_ = true;
+        return;
     }
     write_file_whole(root_ / kIdentityName, identity_text_);
     anew_ = false;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +77,7 @@ class RunDirectory {
 
   private:
     void claim(const RunIdentity& identity, bool go_on);
+    std::unique_ptr<FolderLock> lock_of_drawing() const;
     void set_aside() const;
     void remove_unbegun();
 

@@ -164,9 +164,10 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     DiskReserve reserve;
     bool has_begun = false;
     const auto begin = [&] {
-        if (std::exchange(has_begun, true)) return;
+        if (has_begun) return;
         // Of the stage that it is within there may be meshes of frames.
         directory.begin(products_of_stages(scene, kept ? reached.stages + goes_on_within : 0));
+        has_begun = true;
         if (kept) {
             directory.forget_kept_but(1, reached.stages);
         } else {

@@ -153,6 +153,44 @@ TEST_CASE("meshes of every frame are named as a new first frame asks") {
     CHECK(outcome.code == 8);
 }
 
+TEST_CASE("where a run cannot be set aside it is not touched") {
+    const DoneRun done(kMesh + metal(""), {kAtRest[0], kAtRest[2]});
+    const bool is_folder = GENERATE(true, false);
+    if (is_folder) fs::create_directory(done.out / "replaced");
+    put_text(is_folder ? done.out / "replaced/mine.txt" : done.out / "replaced", "mine");
+    const auto before = files_below(done.out);
+    done.put({kAtRest[0], kAtRestToo[1]});
+    const Outcome outcome = done.go_on();
+    INFO(outcome.err);
+    CHECK(outcome.code == 8);
+    CHECK(says(outcome, "replaced: is where the run that is there would be set aside"));
+    CHECK(files_below(done.out) == before);
+}
+
+TEST_CASE("a run that ended within its first stage is gone on with after a later one is changed") {
+    const Scratch scratch;
+    const fs::path out = scratch.path() / "run";
+    const std::string head = kMesh + metal(""),
+                      first = stage("bend", "angle = \"40 deg\"\nframes = 40");
+    const fs::path scene = put_scene(scratch.path(), head + first + kAtRest[2]);
+    {
+        RunningSwage running(
+            {"run", scene.string(), "--no-render", "--out", out.string(), "--keep-every", "0 s"},
+            scratch.path());
+        while (!fs::exists(out / "resume/stage.bin") && running.is_running()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        running.signal(SIGINT);
+        CHECK(running.wait().code == 128 + SIGINT);
+    }
+    put_text(scene, head + first + kAtRestToo[1]);
+    const Outcome outcome = run(scene, out, {"--go-on"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(says(outcome, "in stage 1 of 2"));
+    check_as_from_nothing(scene, out, scratch.path());
+}
+
 TEST_CASE("a run that is replaced stays whole until the new one is") {
     const DoneRun done(kMesh + metal("") + kOutput, kAtRest);
     const auto before = files_below(done.out);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <sstream>
 
+#include "base/text.h"
 #include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
@@ -32,6 +33,17 @@ TEST_CASE("a machine's parameters are told with the unit of a number that has no
         std::getline(rest, shown);
         const auto quantity = parameter.at("quantity").get<std::string>();
         CHECK(shown == quantity + (unit.empty() ? "" : " [" + unit + "]") + "; default 3");
+    }
+}
+
+TEST_CASE("a machine is told in lines that fit, but for where its file is") {
+    for (const char* name :
+         {"bend", "cut", "floor", "hold", "press", "shelf", "stretch", "twist", "wring"}) {
+        for (const std::string& line : swage::lines_of(run_swage({"machines", name}).out)) {
+            if (line.ends_with(".toml")) continue;
+            INFO(line);
+            CHECK(line.size() <= 100);
+        }
     }
 }
 

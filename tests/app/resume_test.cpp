@@ -204,7 +204,7 @@ TEST_CASE(
     };
     SECTION("another machine, and one more") {
         as(head + first + twist + second);
-        is_refused({}, "choose another --out, or --go-on to keep its first 1 stage, or --fresh");
+        is_refused({}, "choose another --out, or --go-on to keep its first stage, or --fresh");
     }
     SECTION("a remark and a parameter") {
         as("# Softly.\n" + head + first + "\n\n" + second + "radius = \"4 cm\"\n");

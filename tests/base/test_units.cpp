@@ -64,6 +64,7 @@ TEST_CASE("a quantity has the value of its unit, however it is spelled") {
         {"2 lb", Quantity::mass, 0.90718474},
         {"10 lbf", Quantity::force, 44.482216152605},
         {"1 lbf ft", Quantity::torque, 1.3558179483314004},
+        {"1 ft lbf", Quantity::torque, 1.3558179483314004},
         {"32 ft/s2", Quantity::acceleration, 9.7536},
         {"1000 psi", Quantity::stress, 6894757.293168361},
         {"36 ksi", Quantity::stress, 36 * 6894757.293168361},
