@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <optional>
-
+#include "app/frame_arguments.h"
 #include "app/view_arguments.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -17,10 +16,9 @@ namespace fs = std::filesystem;
 namespace {
 
 struct ExportArguments {
-    std::string run, out, frames;
+    std::string run, out;
     ViewArguments view;
-    std::string frame_rate;
-    std::optional<int> first_frame;
+    FrameArguments frames;
     bool no_tools = false, json = false;
 };
 
@@ -28,8 +26,7 @@ UsdScene usd_scene_of(const Json& record, const ExportArguments& given) {
     UsdScene scene;
     scene.render = render_settings_of(record);
     set_view(given.view, scene.render);
-    if (!given.frame_rate.empty()) scene.render.frame_rate = parse_frame_rate(given.frame_rate);
-    if (given.first_frame) scene.render.first_frame = *given.first_frame;
+    set_frames(given.frames, scene.render);
     RunNames names = run_names_of(record);
     scene.name = fs::path(names.scene).stem().string();
     scene.body = std::move(names.body);
@@ -47,11 +44,8 @@ int export_run(const ExportArguments& given) {
         fail(ExitCode::command_line, "{}: only .usda can be written", file.string());
     }
     const FrameStore store(RunDirectory::store_in(run));
-    FrameRange frames{1, store.frame_count()};
+    const FrameRange frames = wanted_frames(given.frames, scene.render, store.frame_count());
     const int first_frame = scene.render.first_frame;
-    if (!given.frames.empty()) {
-        frames = parse_frame_range(given.frames, store.frame_count(), first_frame);
-    }
     Stopwatch watch;
     const UsdOutcome outcome = [&] {
         const auto lap = watch.lap("export");
@@ -96,24 +90,7 @@ void add_export_command(CLI::App& app, Action& chosen) {
             "and key_lamp. Images go beside it. An earlier export of that name is replaced")
         ->check(kSomewhere)
         ->type_name("FILE");
-    command
-        ->add_option("--frames", given.frames,
-                     "only the frames A to B, A, or A- to the end; 1, or --first-frame, is the "
-                     "start. They keep their "
-                     "numbers")
-        ->type_name("A-B")
-        ->each([](const std::string& text) { parse_frame_range(text); });
-    command
-        ->add_option("--fps", given.frame_rate,
-                     "frames a second (default: as the scene's film); 23.976 is exactly "
-                     "24000/1001, and so 29.97, 47.952, 59.94 and 119.88")
-        ->type_name("RATE")
-        ->each([](const std::string& text) { parse_frame_rate(text); });
-    command
-        ->add_option("--first-frame", given.first_frame,
-                     "time code of the first frame, the start, also in --frames (default: as the "
-                     "scene says, else 1)")
-        ->check(CLI::Range(1, kLargestFirstFrame));
+    add_frame_arguments(*command, given.frames);
     add_view_arguments(*command, given.view);
     command->add_flag("--no-tools", given.no_tools,
                       "leave out tools, grips and blades, which are otherwise included where the "

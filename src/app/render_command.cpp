@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
-#include <cstdlib>
-#include <optional>
-#include <tuple>
 #include <vector>
 
+#include "app/frame_arguments.h"
 #include "app/view_arguments.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -22,12 +19,11 @@ namespace fs = std::filesystem;
 namespace {
 
 struct RenderArguments {
-    std::string run, out, frames, gl, background, color;
+    std::string run, out, gl, background, color;
     ViewArguments view;
+    FrameArguments frames;
     std::vector<double> color_range;
     std::vector<std::string> passes;
-    std::string frame_rate;
-    std::optional<int> first_frame;
     bool film = false, no_film = false, no_tools = false, no_ground = false, no_legend = false,
          json = false;
 };
@@ -36,8 +32,7 @@ struct RenderArguments {
 RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     RenderSettings settings = render_settings_of(record);
     set_view(given.view, settings);
-    if (!given.frame_rate.empty()) settings.frame_rate = parse_frame_rate(given.frame_rate);
-    if (given.first_frame) settings.first_frame = *given.first_frame;
+    set_frames(given.frames, settings);
     if (!given.background.empty()) settings.background = background_named(given.background);
     if (settings.background == Background::transparent && given.film) {
         fail(ExitCode::command_line,
@@ -74,10 +69,7 @@ int render(const RenderArguments& given) {
     const Json record = record_of_run(run);
     const FrameStore store(RunDirectory::store_in(run));
     const RenderSettings settings = settings_of(given, record);
-    FrameRange frames{1, store.frame_count()};
-    if (!given.frames.empty()) {
-        frames = parse_frame_range(given.frames, store.frame_count(), settings.first_frame);
-    }
+    const FrameRange frames = wanted_frames(given.frames, settings, store.frame_count());
 
     // The run's own pictures stay what its scene says they are.
     const fs::path out = given.out.empty() ? RunDirectory::drawn_again(run) : fs::path(given.out);
@@ -129,24 +121,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
                      "ground; no film")
         ->check(CLI::IsMember(
             std::vector<std::string>(kBackgroundName.begin(), kBackgroundName.end())));
-    command
-        ->add_option(
-            "--frames", given.frames,
-            "draw only the stills A to B, A, or A- to the end; 1, or --first-frame, is the start. "
-            "The view still frames the whole run")
-        ->type_name("A-B")
-        ->each([](const std::string& text) { parse_frame_range(text); });
-    command
-        ->add_option("--fps", given.frame_rate,
-                     "frames a second of the film (default: as in the scene); 23.976 is exactly "
-                     "24000/1001, and so 29.97, 47.952, 59.94 and 119.88")
-        ->type_name("RATE")
-        ->each([](const std::string& text) { parse_frame_rate(text); });
-    command
-        ->add_option("--first-frame", given.first_frame,
-                     "number of the first still, the start, in names and in --frames (default: as "
-                     "in the scene, else 1)")
-        ->check(CLI::Range(1, kLargestFirstFrame));
+    add_frame_arguments(*command, given.frames);
     command->add_option("--gl", given.gl, "graphics library")
         ->check(CLI::IsMember(std::vector<std::string>(kGlName.begin(), kGlName.end())));
     std::vector<std::string> colors = {"none"};

@@ -28,8 +28,7 @@ Json volumes_json(const std::vector<WorkPiece>& bodies, const std::vector<BodyVo
 }
 
 std::optional<double> swollen_by(const WorkPiece& body) {
-    const bool has_cells = body.matter.material.mechanics == Mechanics::cells;
-    if (!has_cells || body.is_parted || !body.matter.has_flowed()) return {};
+    if (!keeps_volume(body)) return {};
     const std::optional<double> was = enclosed_volume(body.skin, body.skin.position),
                                 is = enclosed_volume(body.skin, body.position);
     if (!was || !is || !(*was > 0)) return {};

@@ -140,12 +140,6 @@ bool is_made_anew(const WorkPiece& piece) {
     return piece.look != nullptr && (piece.is_torn || is_broken(piece.matter));
 }
 
-// Springs that flow have no law of their volume.
-bool keeps_volume(const WorkPiece& piece) {
-    return !piece.is_parted && piece.matter.has_flowed() &&
-           piece.matter.material.mechanics == Mechanics::cells;
-}
-
 // Where matter broke by load. Returns in how many places the skin could not be closed.
 int part_skin(WorkPiece& piece) {
     if (!is_broken(piece.matter)) return 0;
@@ -327,6 +321,11 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies) {
         hasher.add_bytes(&own, sizeof own);
     }
     return hasher.value();
+}
+
+bool keeps_volume(const WorkPiece& piece) {
+    return !piece.is_parted && piece.matter.has_flowed() &&
+           piece.matter.material.mechanics == Mechanics::cells;
 }
 
 void hold_skin(WorkPiece& piece) {

@@ -91,6 +91,10 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
 // Of one body its own; of several, of all.
 std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);
 
+// Whether the skin encloses what its matter takes up: that of whole matter which has flowed, but
+// for springs, whose flow has no law of its volume.
+bool keeps_volume(const WorkPiece& piece);
+
 // Brings the skin to where the matter is; that of a whole body whose cells have flowed encloses
 // what these take up (skin/skin_volume.h).
 void follow_matter(WorkPiece& piece);
