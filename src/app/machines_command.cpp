@@ -48,9 +48,15 @@ std::string machine_text(const MachineSpec& machine) {
         text += std::string(column, ' ') + wrapped(parameter.help, column, column) + "\n";
     }
     std::vector<std::string> parts;
-    for (const ToolSpec& tool : machine.tool) parts.push_back("tool " + tool.name);
-    for (const GripSpec& grip : machine.grip) parts.push_back("grip " + grip.name);
-    for (const BladeSpec& blade : machine.blade) parts.push_back("blade " + blade.name);
+    const auto add = [&](const char* kind, const auto& all) {
+        for (const auto& part : all) {
+            parts.push_back(fmt::format("{} {}{}", kind, part.name,
+                                        part.repeat.is_open() ? "_1, _2, ..." : ""));
+        }
+    };
+    add("tool", machine.tool);
+    add("grip", machine.grip);
+    add("blade", machine.blade);
     for (const LoadSpec& load : machine.load) parts.push_back("load " + load.name);
     text += "\n  " + wrapped(joined(parts, ", "), 2, 2);
     text += machine.stops ? "\n  can stop at a force or torque ([[stage.limit]])"

@@ -11,6 +11,7 @@
 #include "geometry/mesh_read.h"
 #include "machines/bodies.h"
 #include "machines/parameters.h"
+#include "machines/repeat.h"
 #include "machines/start_notes.h"
 #include "machines/touch.h"
 #include "matter/touch_points.h"
@@ -40,6 +41,16 @@ struct Setting {  // what every part of a machine is set up in
         Variables all = known;
         all["duration"] = duration;
         return all;
+    }
+
+    // What a part's expressions see is its own.
+    void turn_to(const Repetition& part) {
+        const auto see = [&](Variables& all) {
+            all.erase("number");
+            if (part.number > 0) all["number"] = part.number;
+        };
+        see(known);
+        for (Variables& beside : known_beside) see(beside);
     }
 };
 
@@ -182,6 +193,16 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     machine.work_from_tool.push_back(work_from_tool);
 }
 
+// With the middle of a repeated tool under the name that all of these share.
+Variables seen_by_motion(const Setting& setting, const ToolSpec& spec) {
+    Variables seen = setting.timed();
+    if (spec.repeat.number == 0) return seen;
+    for (const char* axis : {"_x", "_y", "_z"}) {
+        seen[spec.repeat.name + axis] = setting.known.at(spec.name + axis);
+    }
+    return seen;
+}
+
 // Of any two opposite corners.
 Box box_between(const Setting& setting, const Expression3& from, const Expression3& to) {
     const Vec3 slack = Vec3::Constant(kGripSlack * setting.frame.size.norm());
@@ -227,8 +248,10 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
     const Pose work_from_grip{Quat::Identity(), center};
     for (int p : grip.point) grip.anchor.push_back(setting.point[p] - center);
     for (int axis = 0; axis < 3; ++axis) grip.hold[axis] = spec.along[axis];
-    grip.jaw =
-        clamp_around({jaws.low - center, jaws.high - center}, kClampClearance * setting.spacing);
+    if (spec.drawn) {
+        grip.jaw = clamp_around({jaws.low - center, jaws.high - center},
+                                kClampClearance * setting.spacing);
+    }
 
     Motion motion(spec.motion, setting.timed());
     const Pose start = pose_at(motion, "grip " + spec.name, 0);
@@ -386,7 +409,7 @@ std::vector<std::optional<TurnAxis>> turn_axes(const Machine& machine) {
 
 namespace {
 
-Machine set_up(const MachineSpec& spec, const std::map<std::string, double>& given,
+Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double>& given,
                const WorkFrame& frame, const Aggregate& matter, const std::vector<Material>& beside,
                double duration) {
     Setting setting{frame, matter.lattice.spacing, duration, {}, {}, {}};
@@ -401,25 +424,37 @@ Machine set_up(const MachineSpec& spec, const std::map<std::string, double>& giv
     setting.known = work_piece_variables(matter, frame);
 
     Machine machine;
-    machine.spec = spec;
     machine.frame = frame;
     for (const Material& material : beside) {
         Variables known = setting.known;
         known[kMaterialFriction] = material.friction;
-        known.merge(resolve_parameters(spec, given, known));
+        known.merge(resolve_parameters(given_spec, given, known));
         setting.known_beside.push_back(std::move(known));
     }
-    machine.parameter = resolve_parameters(spec, given, setting.known);
-    machine.apparatus.name = spec.name;
+    machine.parameter = resolve_parameters(given_spec, given, setting.known);
+    machine.apparatus.name = given_spec.name;
     setting.known.insert(machine.parameter.begin(), machine.parameter.end());
 
-    for (const ToolSpec& tool : spec.tool) add_tool(machine, setting, tool);
+    machine.spec = with_single_parts(given_spec, machine.parameter);
+    const MachineSpec& spec = machine.spec;
     for (const ToolSpec& tool : spec.tool) {
-        machine.tool_motion.emplace_back(tool.motion, setting.timed());
+        setting.turn_to(tool.repeat);
+        add_tool(machine, setting, tool);
+    }
+    for (const ToolSpec& tool : spec.tool) {
+        setting.turn_to(tool.repeat);
+        machine.tool_motion.emplace_back(tool.motion, seen_by_motion(setting, tool));
     }
     std::vector<Box> regions;
-    for (const GripSpec& grip : spec.grip) add_grip(machine, setting, matter, grip, regions);
-    for (const BladeSpec& blade : spec.blade) add_blade(machine, setting, blade);
+    for (const GripSpec& grip : spec.grip) {
+        setting.turn_to(grip.repeat);
+        add_grip(machine, setting, matter, grip, regions);
+    }
+    for (const BladeSpec& blade : spec.blade) {
+        setting.turn_to(blade.repeat);
+        add_blade(machine, setting, blade);
+    }
+    setting.turn_to({});
     for (const LoadSpec& load : spec.load) add_load(machine, setting, matter, load);
     for (const LimitSpec& limit : spec.limit) add_limit(machine, limit);
     if (!spec.gravity_strength.empty()) {

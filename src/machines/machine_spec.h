@@ -8,7 +8,8 @@
 // motions, grips, blades, loads and checks those of all tools. Motions and strengths of loads also
 // see t, 0 at the start of the stage and 1 at its end, duration, of the stage [s], and, but for
 // blades, stop: the t at which a limit was reached, 1 until then. What is to come no farther then
-// goes by min(t, stop).
+// goes by min(t, stop). A part that is repeated sees which one it is as number, and a tool's motion the
+// middle of its own as NAME_x, NAME_y, NAME_z.
 //
 // The work frame stands at the centre of the work-piece's box: x along its length, y the way the
 // machine calls up, z across.
@@ -63,6 +64,20 @@ struct MotionSpec {
     bool stands() const { return turn == "0" && move == Expression3{"0", "0", "0"}; }
 };
 
+// A part may stand there several times, as many as `count` says; it uses no more than parameters that
+// do not depend on the work-piece, so that the parts are known as soon as these are.
+struct Repetition {
+    Expression count;      // empty: it is a single part
+    std::string name = ""; // of a single part that was repeated: without its number
+    int number = 0;        // of such a part, from 1
+
+    bool is_open() const { return !count.empty(); }
+};
+
+inline std::string numbered(const std::string& name, int number) {
+    return name + "_" + std::to_string(number);
+}
+
 enum class ToolShape { none, cylinder, box, sphere, mesh };
 
 struct ToolSpec {
@@ -85,6 +100,7 @@ struct ToolSpec {
     Finish finish = Finish::metal;
     double contact_stiffness = 0;  // Tool::contact_stiffness
     MotionSpec motion;
+    Repetition repeat;
 };
 
 // What of the surface lies in the box [from, to] of the work frame is held, along those axes of it
@@ -93,7 +109,9 @@ struct GripSpec {
     std::string name;
     Expression3 from, to;
     std::array<bool, 3> along = {true, true, true};  // x, y, z
+    bool drawn = true;                               // as a clamp
     MotionSpec motion;
+    Repetition repeat;
 };
 
 struct BladeSpec {
@@ -101,6 +119,7 @@ struct BladeSpec {
     std::vector<Expression3> edge;         // in the work frame at the start
     Expression thickness = "0.02*height";  // of the drawn body
     MotionSpec motion;
+    Repetition repeat;
 };
 
 // The way that a part of the surface looks, in the work frame: more than to any other side.

@@ -39,6 +39,22 @@ ExpressionReader ExpressionReader::timed(bool stops) const {
     return reader;
 }
 
+bool ExpressionReader::sees_all_of(const Expression& text) const {
+    try {
+        if (text.empty()) return false;
+        const Formula formula(text.text, known_);
+        return true;
+    } catch (const TextError&) {
+        return false;
+    }
+}
+
+ExpressionReader ExpressionReader::repeated() const {
+    ExpressionReader reader = *this;
+    reader.add_name(kNumber);
+    return reader;
+}
+
 namespace {
 
 std::string word_at(const std::string& text, std::size_t at) {
@@ -76,9 +92,10 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
     } catch (const TextError& error) {
         std::string what = error.what();
         const std::string word = word_at(node.text, error.at());
-        if (later_.contains(word) && !is_reserved_name(word)) {
-            what =
-                fmt::format("unknown name \"{}\": a parameter can use only those above it", word);
+        const auto why = unseen_.find(word);
+        const bool is_seen = std::find(known_.begin(), known_.end(), word) != known_.end();
+        if (why != unseen_.end() && !is_seen && !is_reserved_name(word)) {
+            what = fmt::format("unknown name \"{}\": {}", word, why->second);
         }
         mistakes.add(place_inside(node, error.at()), key + ": " + what);
     }

@@ -3,6 +3,7 @@
 // at its letter, and no variable stands for nothing.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -19,7 +20,8 @@ const std::vector<std::string>& work_piece_names();
 const std::vector<std::pair<std::string, std::string>>&
 work_piece_names_told();  // and what each is
 
-inline const std::string kStop = "stop";  // what motions call it
+inline const std::string kStop = "stop";      // what motions call it
+inline const std::string kNumber = "number";  // of a part that is repeated
 
 class ExpressionReader {
   public:
@@ -29,8 +31,12 @@ class ExpressionReader {
     // One that also sees what motions and strengths see beside all that: t and duration, and stop,
     // but for blades, whose cut is settled when they first touch.
     ExpressionReader timed(bool stops = true) const;
-    // Parameters of the file that it does not see yet.
-    void expect_later(std::set<std::string> names) { later_ = std::move(names); }
+    // Why it sees no such name, instead of that it is unknown.
+    using Unseen = std::map<std::string, std::string>;
+    void explain(Unseen unseen) { unseen_ = std::move(unseen); }
+    void explain(const std::string& name, const std::string& why) { unseen_[name] = why; }
+    // One for a part that is repeated: it sees which one it is.
+    ExpressionReader repeated() const;
 
     // Look up a number or an expression; `into` keeps its text. Return whether the key is there.
     bool read(TableReader& table, const std::string& key, Expression& into);
@@ -49,6 +55,8 @@ class ExpressionReader {
     void expect_positive(TableReader& table, const std::string& key);
     void expect_direction(TableReader& table);  // of its axis
 
+    // Whether an expression uses no other names.
+    bool sees_all_of(const Expression& text) const;
     // What another reader's expressions named counts as named here.
     void take_used(const ExpressionReader& other) {
         used_.insert(other.used_.begin(), other.used_.end());
@@ -65,7 +73,7 @@ class ExpressionReader {
                      Quantity quantity);
 
     std::vector<std::string> known_;
-    std::set<std::string> later_;
+    Unseen unseen_;
     std::set<std::string> used_;
 };
 

@@ -311,6 +311,9 @@ const std::vector<KeyHelp>& machine_key_help() {
 
         {"[[tool]]", "name",
          "letters, digits and _; expressions can use its middle as NAME_x, NAME_y, NAME_z"},
+        {"[[tool]]", "repeat",
+         "how many of it there are, called NAME_1, NAME_2, ..., 0 to 100; its expressions can use "
+         "number. May use parameters that do not depend on the work-piece; left out: one, NAME"},
         {"[[tool]]", "shape", "mesh: any closed mesh", {}, "-"},
         {"[[tool]]", "radius", "radius of a cylinder or sphere", {}, "-"},
         {"[[tool]]",
@@ -354,6 +357,7 @@ const std::vector<KeyHelp>& machine_key_help() {
          "[0, 0, 0]"},
 
         {"[[grip]]", "name", "letters, digits and _"},
+        {"[[grip]]", "repeat", "as in [[tool]]"},
         {"[[grip]]", "from", "a corner of a box; the surface in it is held", {}, "-"},
         {"[[grip]]", "to", "the opposite corner", {}, "-"},
         {"[[grip]]",
@@ -361,9 +365,11 @@ const std::vector<KeyHelp>& machine_key_help() {
          "axes along which it holds: xyz clamps, y acts as a smooth plane",
          {},
          "\"xyz\""},
+        {"[[grip]]", "drawn", "false: no clamp is drawn around what it holds"},
         {"[[grip]]", "motion", "a section [grip.motion]: the keys of [tool.motion]", "section"},
 
         {"[[blade]]", "name", "letters, digits and _"},
+        {"[[blade]]", "repeat", "as in [[tool]]"},
         {"[[blade]]", "edge", "where the edge starts"},
         {"[[blade]]", "thickness", "thickness in pictures"},
         {"[[blade]]", "motion", "a section [blade.motion]: the keys of [tool.motion]", "section"},

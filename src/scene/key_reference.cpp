@@ -125,11 +125,13 @@ SectionReference expression_reference() {
     add("a ? b : c", "b if a is true, else c");
     for (const auto& [name, meaning] : work_piece_names_told()) add(name, meaning);
     add("NAME", "a parameter of the machine");
-    add("TOOL_x, TOOL_y, TOOL_z", "after a [[tool]]: its middle");
+    add("TOOL_x, TOOL_y, TOOL_z",
+        "after a [[tool]]: its middle; of one with repeat only in its own motion");
     add("t", "in motions and strengths: time, 0 to 1 over the stage");
     add("stop",
         "as t, except for blades: the t at which a limit ([[stage.limit]]) was reached, 1 until "
         "then; motion written with min(t, stop) ends there");
+    add("number", "in a part with repeat, and in its motion: which one it is, from 1");
     add("duration", "as t: duration of the stage, so that t*duration is the time within it");
     for (const FormulaFunction& f : formula_functions()) add(f.call, f.help);
     return all;

@@ -42,17 +42,36 @@ std::optional<double> ParameterRanges::value(const Bound& bound,
     }
 }
 
-std::vector<Range> ParameterRanges::ranges(const std::map<std::string, double>& given) const {
+std::vector<std::optional<double>> ParameterRanges::known(
+    const std::map<std::string, double>& given) const {
     std::vector<std::optional<double>> known(name_.size());
-    std::vector<Range> ranges(default_.size());
-    for (std::size_t n = 0; n < ranges.size(); ++n) {
-        ranges[n].low = value(low_[n], known).value_or(ranges[n].low);
-        ranges[n].high = value(high_[n], known).value_or(ranges[n].high);
+    for (std::size_t n = 0; n < default_.size(); ++n) {
         const auto found = given.find(name_[first_parameter_ + n]);
         known[first_parameter_ + n] =
             found != given.end() ? found->second : value(default_[n], known);
     }
+    return known;
+}
+
+// A range uses no parameter below its own.
+std::vector<Range> ParameterRanges::ranges(const std::map<std::string, double>& given) const {
+    const std::vector<std::optional<double>> all = known(given);
+    std::vector<Range> ranges(default_.size());
+    for (std::size_t n = 0; n < ranges.size(); ++n) {
+        ranges[n].low = value(low_[n], all).value_or(ranges[n].low);
+        ranges[n].high = value(high_[n], all).value_or(ranges[n].high);
+    }
     return ranges;
+}
+
+std::map<std::string, double> ParameterRanges::values(
+    const std::map<std::string, double>& given) const {
+    const std::vector<std::optional<double>> all = known(given);
+    std::map<std::string, double> values;
+    for (std::size_t n = first_parameter_; n < all.size(); ++n) {
+        if (all[n]) values[name_[n]] = *all[n];
+    }
+    return values;
 }
 
 }  // namespace swage

@@ -22,6 +22,9 @@ class ParameterRanges {
     // depends on what is not known yet is open to anything.
     std::vector<Range> ranges(const std::map<std::string, double>& given) const;
 
+    // The values of those that are certain.
+    std::map<std::string, double> values(const std::map<std::string, double>& given) const;
+
   private:
     struct Bound {  // an expression, and whose values it needs
         std::shared_ptr<const Formula> formula;
@@ -30,6 +33,8 @@ class ParameterRanges {
     Bound bound(const Expression& text) const;
     static std::optional<double> value(const Bound& bound,
                                        const std::vector<std::optional<double>>& known);
+    // Of the work-piece's names and the parameters.
+    std::vector<std::optional<double>> known(const std::map<std::string, double>& given) const;
 
     std::vector<std::string> name_;  // of the work-piece, then of the parameters
     std::size_t first_parameter_;

@@ -50,13 +50,20 @@ class MachineReader {
         std::size_t number = 0;
         for (const Node* node : root.tables("tool", "[[tool]]")) {
             TableReader table(*node, "[[tool]]", reading_);
-            read_motion(table, "[tool.motion]", machine.tool[number++].motion);
+            ToolSpec& tool = machine.tool[number++];
+            ExpressionReader seen = expression_;
+            if (tool.repeat.is_open()) {
+                seen = expression_.repeated();
+                seen.add_names(middle_names(tool.name));
+            }
+            read_motion(table, "[tool.motion]", seen, tool.motion);
         }
         for (const Node* node : root.tables("grip", "[[grip]]")) read_grip(*node, machine);
         for (const Node* node : root.tables("blade", "[[blade]]")) read_blade(*node, machine);
         for (const Node* node : root.tables("load", "[[load]]")) read_load(*node, machine);
         for (const Node* node : root.tables("check", "[[check]]")) read_check(*node, machine);
         root.finish();
+        refuse_numbered_names();
         machine.stops = expression_.is_used(kStop);
         if (machine.tool.empty() && machine.grip.empty() && machine.blade.empty() &&
             machine.load.empty() && reading_.is_complete) {
@@ -73,7 +80,7 @@ class MachineReader {
         for (const Entry& entry : all.entry) names.insert(entry.key);
         for (const Entry& entry : all.entry) {
             const std::string section = "[parameter." + entry.key + "]";
-            expression_.expect_later(names);
+            expression_.explain(later(names));
             names.erase(entry.key);
             if (!check_parameter_name(entry)) continue;
             if (entry.value.kind != Node::Kind::table) {
@@ -102,6 +109,8 @@ class MachineReader {
             };
             if (!read("default", parameter.default_value)) {
                 table.missing("default", "the value if the scene gives none");
+            } else if (counting_.sees_all_of(parameter.default_value)) {
+                counting_.add_name(parameter.name);
             }
             read("low", parameter.low);
             read("high", parameter.high);
@@ -112,7 +121,59 @@ class MachineReader {
             expression_.add_name(parameter.name);
             machine.parameter.push_back(std::move(parameter));
         }
-        expression_.expect_later({});
+        expression_.explain({{kNumber, "only a part with repeat has one"}});
+        explain_counts(machine);
+    }
+
+    static ExpressionReader::Unseen later(const std::set<std::string>& names) {
+        ExpressionReader::Unseen unseen;
+        for (const std::string& name : names) {
+            unseen[name] = "a parameter can use only those above it";
+        }
+        return unseen;
+    }
+
+    void explain_counts(const MachineSpec& machine) {
+        const std::string why =
+            "repeat can use only parameters whose default does not depend on the work-piece";
+        ExpressionReader::Unseen unseen;
+        for (const std::string& name : work_piece_names()) unseen[name] = why;
+        for (const ParameterSpec& parameter : machine.parameter) unseen[parameter.name] = why;
+        counting_.explain(std::move(unseen));
+    }
+
+    // What reads the other expressions of the part.
+    ExpressionReader read_repeat(TableReader& table, Repetition& repeat) {
+        if (!counting_.read(table, "repeat", repeat.count)) return expression_;
+        expression_.take_used(counting_);
+        return expression_.repeated();
+    }
+
+    std::string read_name(TableReader& table, const Repetition& repeat) {
+        const std::string name = read_part_name(table, part_names_);
+        const Node* given = table.find("name");
+        if (given != nullptr) parts_.push_back({name, given->place, repeat.is_open()});
+        return name;
+    }
+
+    // No other part may be called as one of those that are repeated.
+    void refuse_numbered_names() {
+        for (const Part& repeated : parts_) {
+            if (!repeated.is_repeated) continue;
+            for (const Part& part : parts_) {
+                if (!is_numbered(part.name, repeated.name)) continue;
+                mistakes_.add(part.place,
+                              fmt::format("\"{}\" is what a \"{}\" that is repeated is called; "
+                                          "choose another name",
+                                          part.name, repeated.name));
+            }
+        }
+    }
+
+    static bool is_numbered(const std::string& text, const std::string& name) {
+        return text.size() > name.size() + 1 && text.starts_with(name + "_") &&
+               std::all_of(text.begin() + std::ptrdiff_t(name.size()) + 1, text.end(),
+                           [](char c) { return c >= '0' && c <= '9'; });
     }
 
     bool check_parameter_name(const Entry& entry) {
@@ -123,6 +184,8 @@ class MachineReader {
             reason = "is the time";
         } else if (entry.key == kStop) {
             reason = "is the time at which a limit is reached";
+        } else if (entry.key == kNumber) {
+            reason = "is which one a repeated part is";
         } else if (is_work_piece_name(entry.key)) {
             reason = "is a variable of the work-piece";
         } else if (is_reserved_name(entry.key)) {
@@ -162,10 +225,11 @@ class MachineReader {
     void read_tool(const Node& node, MachineSpec& machine) {
         TableReader table(node, "[[tool]]", reading_);
         ToolSpec tool;
-        tool.name = read_part_name(table, part_names_);
+        ExpressionReader expression = read_repeat(table, tool.repeat);
+        tool.name = read_name(table, tool.repeat);
         for (const ParameterSpec& parameter : machine.parameter) {
-            for (const char* axis : {"_x", "_y", "_z"}) {
-                if (parameter.name != tool.name + axis) continue;
+            for (const std::string& middle : middle_names(tool.name)) {
+                if (parameter.name != middle) continue;
                 table.mistake("name", fmt::format("\"{}\" is a parameter, and would also be the "
                                                   "position of tool \"{}\"; choose another name",
                                                   parameter.name, tool.name));
@@ -181,28 +245,28 @@ class MachineReader {
         const auto is = [&](ToolShape shape) { return tool.shape == shape; };
         const bool is_round = is(ToolShape::cylinder) || is(ToolShape::sphere);
         const bool is_long = is(ToolShape::cylinder) || is(ToolShape::mesh);
-        read_size(table, "radius", is_round, tool.radius);
-        read_size(table, "length", is_long, tool.length);
+        if (is_round) read_size(table, "radius", expression, tool.radius);
+        if (is_long) read_size(table, "length", expression, tool.length);
         if (is(ToolShape::box)) {
-            if (!expression_.read(table, "size", Quantity::length, tool.size)) {
+            if (!expression.read(table, "size", Quantity::length, tool.size)) {
                 table.missing("size", "three lengths along x, y and z");
             }
-            expression_.expect_positive(table, "size");
-            expression_.read(table, "rounding", Quantity::length, tool.rounding);
+            expression.expect_positive(table, "size");
+            expression.read(table, "rounding", Quantity::length, tool.rounding);
         }
         if (is(ToolShape::mesh)) read_tool_mesh(table, tool.mesh, tool.mesh_place);
-        expression_.read(table, "axis", Quantity::number, tool.axis);
-        expression_.expect_direction(table);
-        expression_.read(table, "turn", Quantity::angle, tool.turn);
-        if (!expression_.read(table, "at", Quantity::length, tool.at)) {
+        expression.read(table, "axis", Quantity::number, tool.axis);
+        expression.expect_direction(table);
+        expression.read(table, "turn", Quantity::angle, tool.turn);
+        if (!expression.read(table, "at", Quantity::length, tool.at)) {
             table.missing("at", "the position of its centre, such as [0, \"-height\", 0]");
         }
-        expression_.read(table, "touch", Quantity::number, tool.touch);
-        expression_.read(table, "gap", Quantity::length, tool.gap);
+        expression.read(table, "touch", Quantity::number, tool.touch);
+        expression.read(table, "gap", Quantity::length, tool.gap);
         if (table.find("gap") != nullptr && table.find("touch") == nullptr) {
             table.warn("gap", "gap has no effect without touch");
         }
-        expression_.read(table, "friction", Quantity::number, tool.friction);
+        expression.read(table, "friction", Quantity::number, tool.friction);
         table.quantity("contact_stiffness", Quantity::number, between(0.5, 100),
                        tool.contact_stiffness);
         read_color(table, tool.color);
@@ -213,14 +277,26 @@ class MachineReader {
         table.find("motion");
         if (is(ToolShape::none)) table.leave_unknown();
         table.finish();
-        for (const char* axis : {"_x", "_y", "_z"}) expression_.add_name(tool.name + axis);
+        expression_.take_used(expression);
+        if (tool.repeat.is_open()) {
+            for (const std::string& middle : middle_names(tool.name)) {
+                expression_.explain(
+                    middle, "only its own motion sees the middle of a tool that is repeated");
+            }
+        } else {
+            expression_.add_names(middle_names(tool.name));
+        }
         machine.tool.push_back(std::move(tool));
     }
 
-    void read_size(TableReader& table, const std::string& key, bool is_wanted, Expression& into) {
-        if (!is_wanted) return;  // and then an unknown key where it stands
-        if (expression_.read(table, key, Quantity::length, into)) {
-            expression_.expect_positive(table, key);
+    static std::vector<std::string> middle_names(const std::string& tool) {
+        return {tool + "_x", tool + "_y", tool + "_z"};
+    }
+
+    static void read_size(TableReader& table, const std::string& key, ExpressionReader& expression,
+                          Expression& into) {
+        if (expression.read(table, key, Quantity::length, into)) {
+            expression.expect_positive(table, key);
         } else {
             table.missing(key, "a length");
         }
@@ -241,18 +317,19 @@ class MachineReader {
         }
     }
 
-    void read_motion(TableReader& part, const std::string& section, MotionSpec& motion,
-                     bool stops = true) {
+    void read_motion(TableReader& part, const std::string& section, ExpressionReader& expression,
+                     MotionSpec& motion, bool stops = true) {
         TableReader table(part.table("motion"), section, reading_);
-        ExpressionReader timed = expression_.timed(stops);
+        ExpressionReader timed = expression.timed(stops);
         timed.read(table, "move", Quantity::length, motion.move);
         const bool turns = timed.read(table, "turn", Quantity::angle, motion.turn);
-        const bool has_axis = expression_.read(table, "axis", Quantity::number, motion.axis);
-        expression_.expect_direction(table);
+        const bool has_axis = expression.read(table, "axis", Quantity::number, motion.axis);
+        expression.expect_direction(table);
         const bool has_pivot = timed.read(table, "pivot", Quantity::length, motion.pivot);
         if (!turns && (has_axis || has_pivot)) {
             table.warn(has_axis ? "axis" : "pivot", "axis and pivot have no effect without turn");
         }
+        expression_.take_used(expression);
         expression_.take_used(timed);
         table.finish();
     }
@@ -260,15 +337,17 @@ class MachineReader {
     void read_grip(const Node& node, MachineSpec& machine) {
         TableReader table(node, "[[grip]]", reading_);
         GripSpec grip;
-        grip.name = read_part_name(table, part_names_);
-        if (!expression_.read(table, "from", Quantity::length, grip.from)) {
+        ExpressionReader expression = read_repeat(table, grip.repeat);
+        grip.name = read_name(table, grip.repeat);
+        if (!expression.read(table, "from", Quantity::length, grip.from)) {
             table.missing("from", "a corner of a box");
         }
-        if (!expression_.read(table, "to", Quantity::length, grip.to)) {
+        if (!expression.read(table, "to", Quantity::length, grip.to)) {
             table.missing("to", "the opposite corner");
         }
         read_along(table, grip.along);
-        read_motion(table, "[grip.motion]", grip.motion);
+        table.truth("drawn", grip.drawn);
+        read_motion(table, "[grip.motion]", expression, grip.motion);
         table.finish();
         machine.grip.push_back(std::move(grip));
     }
@@ -293,7 +372,7 @@ class MachineReader {
     void read_load(const Node& node, MachineSpec& machine) {
         TableReader table(node, "[[load]]", reading_);
         LoadSpec load;
-        load.name = read_part_name(table, part_names_);
+        load.name = read_name(table, {});
         read_load_keys(table, expression_, load);
         table.finish();
         machine.load.push_back(std::move(load));
@@ -302,7 +381,8 @@ class MachineReader {
     void read_blade(const Node& node, MachineSpec& machine) {
         TableReader table(node, "[[blade]]", reading_);
         BladeSpec blade;
-        blade.name = read_part_name(table, part_names_);
+        ExpressionReader expression = read_repeat(table, blade.repeat);
+        blade.name = read_name(table, blade.repeat);
         table.describe("edge", "points, each [x, y, z] of expressions");
         const Node* edge = table.find("edge");
         if (edge == nullptr) {
@@ -312,16 +392,16 @@ class MachineReader {
         } else {
             for (const Node& point : edge->item) {
                 blade.edge.emplace_back();
-                expression_.read_item(table, "edge", point, Quantity::length, blade.edge.back());
+                expression.read_item(table, "edge", point, Quantity::length, blade.edge.back());
             }
             if (mistakes_.is_clean() && blade.edge.front() == blade.edge.back()) {
                 table.mistake("edge", "edge begins and ends at the same point");
             }
         }
-        if (expression_.read(table, "thickness", Quantity::length, blade.thickness)) {
-            expression_.expect_positive(table, "thickness");
+        if (expression.read(table, "thickness", Quantity::length, blade.thickness)) {
+            expression.expect_positive(table, "thickness");
         }
-        read_motion(table, "[blade.motion]", blade.motion, false);
+        read_motion(table, "[blade.motion]", expression, blade.motion, false);
         table.finish();
         machine.blade.push_back(std::move(blade));
     }
@@ -352,8 +432,16 @@ class MachineReader {
     fs::path folder_;
     MistakeList& mistakes_;
     Reading& reading_;
+    struct Part {
+        std::string name;
+        Place place;
+        bool is_repeated;
+    };
+
     ExpressionReader expression_;
+    ExpressionReader counting_;  // sees what is known before the work-piece
     std::set<std::string> part_names_;
+    std::vector<Part> parts_;
 };
 
 }  // namespace

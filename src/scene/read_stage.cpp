@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machines/parameters.h"
+#include "machines/repeat.h"
 #include "scene/expressions.h"
 #include "scene/file_text.h"
 #include "scene/read_limit.h"
@@ -164,6 +166,19 @@ void StageReader::read_parameters(TableReader& table, const Loaded& loaded, Stag
     }
 }
 
+// What comes after them sees the machine's parts.
+void StageReader::repeat_parts(TableReader& table, const Loaded& loaded, StageSpec& stage) {
+    try {
+        stage.machine = with_single_parts(stage.machine, loaded.ranges->values(stage.parameter));
+    } catch (const ParameterError& error) {
+        for (const ParameterMistake& mistake : error.mistakes()) {
+            table.mistake(
+                stage.parameter.contains(mistake.parameter) ? mistake.parameter : "machine",
+                mistake.sentence);
+        }
+    }
+}
+
 // The machine's own expressions see the same names.
 void StageReader::read_loads(TableReader& table, StageSpec& stage) {
     ExpressionReader expression;
@@ -259,6 +274,7 @@ StageSpec StageReader::read(const Node& node) {
         stage.machine = *loaded->machine;
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
         read_parameters(table, *loaded, stage);
+        repeat_parts(table, *loaded, stage);
         read_loads(table, stage);
         read_limits(table, stage.sim.solver, stage.machine);
     } else if (reading_.describes) {

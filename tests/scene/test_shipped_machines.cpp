@@ -266,6 +266,46 @@ TEST_CASE("the cutter warns of a cut that runs into a grip") {
     CHECK(at_bar("cut", {{"place", 0.36}, {"tilt", 0.5}}).notes.size() == 1);
 }
 
+TEST_CASE("the slicer parts a rod into slices of one thickness, together or in turn") {
+    const TriMesh rod = make_shape("rod", {{"length", 1.0}, {"diameter", 0.1}}).mesh;
+    MoldSettings settings;
+    settings.across = 3;
+    const Aggregate molded = mold(rod, Material{}, settings);
+    for (const double slices : {2.0, 3.0, 7.0}) {
+        for (const double in_turn : {0.0, 0.6, 1.0}) {
+            Aggregate body = molded;
+            const Machine machine =
+                at_bar("slice", {{"slices", slices}, {"in_turn", in_turn}, {"gap", 0.02}}, body);
+            CHECK(machine.notes.empty());
+            REQUIRE(machine.apparatus.blade.size() == slices - 1);
+            const std::vector<Drive> way =
+                drives_of(machine, legs_of(machine, 40, 1, false).leg, 1, 1);
+            sever(body, crossed_connections(body, swept_triangles(machine.apparatus, way)));
+            CHECK(find_pieces(body).count == slices);
+            // The middles of the slices are even, before and after.
+            const Drive start = drive_at(machine, 0, 1), end = drive_at(machine, 1, 1);
+            for (std::size_t n = 0; n < machine.apparatus.grip.size(); ++n) {
+                const double middle = double(n) - 0.5 * (slices - 1);
+                const double before = start.world_from_grip[n].translation.x();
+                CHECK(std::abs(before - middle / slices) <= 0.5 * body.lattice.spacing);
+                CHECK(end.world_from_grip[n].translation.x() - before ==
+                      Approx(0.02 * middle).margin(1e-12));
+            }
+            // In turn: the first is down when the last has not begun.
+            const auto fallen = [&](std::size_t blade, double t) {
+                return start.world_from_blade[blade].translation.y() -
+                       drive_at(machine, t, 1).world_from_blade[blade].translation.y();
+            };
+            const std::size_t last = machine.apparatus.blade.size() - 1;
+            if (in_turn == 1 && last > 0) {
+                CHECK(fallen(0, 0.6 / (slices - 1)) == Approx(fallen(last, 0.6)));
+                CHECK(fallen(last, 0.6 * (slices - 2) / (slices - 1)) == Approx(0).margin(1e-12));
+            }
+            if (in_turn == 0) CHECK(fallen(0, 0.3) == Approx(fallen(last, 0.3)));
+        }
+    }
+}
+
 TEST_CASE("the stretcher draws by the strain of the free part, and returns if asked to") {
     const Machine machine = at_bar(
         "stretch", {{"strain", 0.5}, {"grip_length", 0.1}, {"drawing", 0.5}, {"release", 0.25}});

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/repeat.h"
+
+#include <cmath>
+
+#include "machines/parameters.h"
+
+namespace swage {
+
+namespace {
+
+int count_of(const Repetition& repeat, const std::string& whose, const Variables& known) {
+    const double count = evaluate(repeat.count, known);
+    if (count >= 0 && count <= kMostRepeats && count == std::floor(count)) return int(count);
+    std::vector<std::string> names;
+    for (const auto& [name, value] : known) names.push_back(name);
+    const std::vector<std::string> used = Formula(repeat.count.text, names).used();
+    throw ParameterError(
+        {{used.empty() ? "" : used.front(),
+          fmt::format(
+              "{} is repeated {:.6g} times (\"{}\"): it must be a whole number from 0 to {}", whose,
+              count, repeat.count.text, kMostRepeats),
+          repeat.count.place}});
+}
+
+template <typename Part>
+std::vector<Part> single(const std::vector<Part>& parts, const std::string& machine,
+                         const Variables& known) {
+    std::vector<Part> all;
+    for (const Part& part : parts) {
+        if (!part.repeat.is_open()) {
+            all.push_back(part);
+            continue;
+        }
+        const std::string whose = fmt::format("machine {}: {}", machine, part.name);
+        const int count = count_of(part.repeat, whose, known);
+        for (int number = 1; number <= count; ++number) {
+            Part& one = all.emplace_back(part);
+            one.name = numbered(part.name, number);
+            one.repeat = {{}, part.name, number};
+        }
+    }
+    return all;
+}
+
+}  // namespace
+
+MachineSpec with_single_parts(MachineSpec machine, const Variables& known) {
+    machine.tool = single(machine.tool, machine.name, known);
+    machine.grip = single(machine.grip, machine.name, known);
+    machine.blade = single(machine.blade, machine.name, known);
+    return machine;
+}
+
+}  // namespace swage
