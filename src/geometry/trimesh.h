@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct SurfaceMaterial {
     double roughness = 0.55;
     double metallic = 0.0;
     double clear = 0.0;                  // share of the light that goes in and through, 0 to 1
+    std::optional<Vec3> inside = {};     // colour of what lies under it; none: follows from its own
     bool takes_colors = true;            // a mesh's position_color multiplies `color`
     std::filesystem::path texture = {};  // absolute; empty for none. Multiplies `color`.
     // The image itself (a PNG or JPEG file's bytes) when it came inside the mesh file, as in GLB;

@@ -29,6 +29,12 @@ std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& me
     return body.wears_material || says_none(mesh) ? body.look : std::nullopt;
 }
 
+void color_inside(const BodySpec& body, TriMesh& mesh) {
+    if (!body.cut_color) return;
+    if (mesh.material.empty()) mesh.material.emplace_back();
+    for (SurfaceMaterial& material : mesh.material) material.inside = body.cut_color;
+}
+
 bool hides_material(const BodySpec& body, const TriMesh& mesh) {
     return body.look && !body.color && !body.wears_material && !says_none(mesh);
 }

@@ -11,6 +11,9 @@ namespace swage {
 // nothing or the scene asks for it. None: as the mesh says.
 std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& mesh);
 
+// Gives all its materials the scene's colour of what lies under them, if it has one.
+void color_inside(const BodySpec& body, TriMesh& mesh);
+
 // Whether the mesh says how it looks, and the scene does not, so that its material's look is not
 // seen.
 bool hides_material(const BodySpec& body, const TriMesh& mesh);

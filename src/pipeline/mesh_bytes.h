@@ -9,9 +9,9 @@ namespace swage {
 
 template <typename Io>
 void visit(Io& io, SurfaceMaterial& material) {
-    auto& [name, color, roughness, metallic, clear, takes_colors, texture, embedded_texture] =
-        material;
-    io(name, color, roughness, metallic, clear, texture, takes_colors);
+    auto& [name, color, roughness, metallic, clear, inside, takes_colors, texture,
+           embedded_texture] = material;
+    io(name, color, roughness, metallic, clear, inside, texture, takes_colors);
     io.image(embedded_texture);
 }
 

@@ -267,12 +267,14 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         paint(like, body_look(body, input.mesh));
+        color_inside(body, like);
         name_looks(like, piece.label);
         piece.look = std::make_shared<const NewLook>(like);
         lay_boundary(piece);
     } else {
         piece.skin = skin.divide ? divided_skin(input.mesh, piece.matter) : input.mesh;
         paint(piece.skin, body_look(body, input.mesh));
+        color_inside(body, piece.skin);
         name_looks(piece.skin, piece.label);
         piece.mount = mount_mesh(piece.skin.position, piece.matter, skin.kind);
     }

@@ -186,6 +186,15 @@ const std::vector<IdleKey> kOfMaterials = {
     {"stickiness", unless_something_strikes},
 };
 
+const std::vector<IdleKey> kOfMeshes = {
+    {"cut_color",
+     [](const Section& at) -> std::string {
+         const bool cuts =
+             any_stage(at.scene, [](const StageSpec& s) { return !s.machine.blade.empty(); });
+         return cuts || breaks(at.scene) ? "" : ": no machine cuts, and no material breaks";
+     }},
+};
+
 const std::vector<IdleKey> kOfSkins = {
     {"divide", unless_skin_is_mounted},
     {"crease_angle",
@@ -306,11 +315,13 @@ void warn_of_idle_keys(const Node& root, const SceneSpec& scene, MistakeList& mi
         return entry != nullptr && n < entry->value.item.size() ? entry->value.item[n] : absent;
     };
     const BodySpec& work_piece = scene.work_piece();
+    judge(kOfMeshes, {section(root, "mesh"), scene}, mistakes);
     judge(kOfMaterials, {section(root, "material"), scene, &work_piece.material}, mistakes);
     for (std::size_t n = 0; n < work_piece.inset.size(); ++n) {
         judge(kOfMaterials, {item("inset", n), scene, &work_piece.inset[n].material}, mistakes);
     }
     for (std::size_t b = 1; b < scene.body.size(); ++b) {
+        judge(kOfMeshes, {item("body", b - 1), scene}, mistakes);
         judge(kOfMaterials,
               {section(item("body", b - 1), "material"), scene, &scene.body[b].material}, mistakes);
     }

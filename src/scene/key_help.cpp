@@ -13,6 +13,11 @@ const std::vector<KeyHelp>& scene_key_help() {
          "rotation about the middle of its box: a vector along the axis, as long as the angle"},
         {"[mesh]", "velocity", "initial velocity"},
         {"[mesh]", "spin", "initial spin about its centre of mass"},
+        {"[mesh]", "cut_color",
+         "colour of faces that cuts and breaks lay open; left out: as the material that covers "
+         "most "
+         "of the mesh, paler, and pale under a texture",
+         "[red, green, blue], each 0 to 1"},
         {"[mesh]", "color", "red, green, blue in place of the file's colour",
          "[red, green, blue], each 0 to 1"},
         {"[mesh]",

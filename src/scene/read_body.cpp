@@ -51,6 +51,7 @@ void read_start(TableReader& table, BodySpec& body) {
     table.vector("velocity", Quantity::speed, body.start.velocity);
     table.vector("spin", Quantity::spin, body.start.spin);
     read_color(table, body.color);
+    read_color(table, body.cut_color, "cut_color");
     if (table.choice<std::optional<bool>>("finish", {{"matt", false}, {"metal", true}},
                                           body.metal) &&
         !body.color) {

@@ -7,14 +7,13 @@
 
 namespace swage {
 
-void read_color(TableReader& table, std::optional<Vec3>& color) {
+void read_color(TableReader& table, std::optional<Vec3>& color, const std::string& key) {
     Vec3 seen = Vec3::Zero();
-    if (!table.vector("color", Quantity::number, seen)) return;
+    if (!table.vector(key, Quantity::number, seen)) return;
     if ((seen.array() < 0).any() || (seen.array() > 1).any()) {
         table.mistake(
-            "color",
-            fmt::format("color = [{:g}, {:g}, {:g}]: red, green and blue must each be 0 to 1",
-                        seen.x(), seen.y(), seen.z()));
+            key, fmt::format("{} = [{:g}, {:g}, {:g}]: red, green and blue must each be 0 to 1",
+                             key, seen.x(), seen.y(), seen.z()));
     }
     color =
         Vec3(linear_from_srgb(seen.x()), linear_from_srgb(seen.y()), linear_from_srgb(seen.z()));

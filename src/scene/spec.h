@@ -54,9 +54,10 @@ struct BodySpec {
     std::string name = "work-piece";  // a file name
     MeshSpec mesh;
     StartSpec start;
-    std::optional<Vec3> color;    // linear RGB, instead of what its file says
-    std::optional<bool> metal;    // that colour is; none: matt, or clear, as the material looks
-    bool wears_material = false;  // looks as its material does whatever its file says
+    std::optional<Vec3> color;      // linear RGB, instead of what its file says
+    std::optional<bool> metal;      // that colour is; none: matt, or clear, as the material looks
+    std::optional<Vec3> cut_color;  // linear RGB, of faces that cuts and breaks lay open
+    bool wears_material = false;    // looks as its material does whatever its file says
     Material material;
     std::optional<SurfaceMaterial> look;  // of that, where anyone says
     bool gives_damping = false;           // its own, not what a known material has

@@ -46,6 +46,11 @@ SurfaceMaterial cut_look(const TriMesh& mesh) {
     look.takes_colors = false;  // those of its rim are the outside's
     const bool hides = !outside.texture.empty() || outside.embedded_texture != nullptr ||
                        !mesh.position_color.empty();
+    if (outside.inside) {
+        look.color = *outside.inside;
+        look.roughness = 0.7;
+        return look;
+    }
     if (outside.metallic > 0.5) {
         look.color = outside.color;
         look.metallic = outside.metallic;

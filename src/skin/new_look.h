@@ -16,7 +16,7 @@ inline constexpr const char* kCutMaterial = "cut";
 
 // The number of that material in `mesh`, a part or a new surface of `like`. It is added where it is
 // not there; so is the mesh's own where it has none. Metal is metal inside, and a plain colour goes
-// through, paler; what a texture hides is pale.
+// through, paler; what a texture hides is pale; where a material says what is inside, it is that.
 int cut_material(TriMesh& mesh, const TriMesh& like);
 
 // The look of a mesh for surfaces that are made anew from the same matter: each face has material,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/srgb.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
 #include "pipeline/json.h"
@@ -40,6 +41,32 @@ TEST_CASE("a cut through what has flowed unevenly has flat faces") {
     const int first = parts.triangle_component[0];
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         CHECK((mesh.triangle_part[t] == 0) == (parts.triangle_component[t] == first));
+    }
+}
+
+TEST_CASE("cut faces have the colour that the scene gives the inside, however the skin is made") {
+    const Scratch scratch;
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    const fs::path scene = scratch.path() / "cut.toml", out = scratch.path() / "out";
+    for (const std::string kind : {"mount", "boundary"}) {
+        put_text(scene,
+                 "[mesh]\nfile = \"bar.obj\"\ncut_color = [1, 0.5, 0]\n[material]\nname = "
+                 "\"copper\"\n[mold]\nacross = 3\n[skin]\nkind = \"" +
+                     kind + "\"\n[[stage]]\nmachine = \"slice\"\nslices = 3\nframes = 3\n");
+        const Outcome outcome =
+            run_swage({"run", scene.string(), "--no-render", "--fresh", "--out", out.string()});
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        const swage::TriMesh mesh = swage::read_mesh(out / "meshes/1-slice.obj");
+        CHECK(swage::surface_components(mesh).count == 3);
+        int cut = 0;
+        for (const swage::SurfaceMaterial& look : mesh.material) {
+            const bool is_cut = look.name == swage::kCutMaterial;
+            const swage::Vec3 orange(1, swage::linear_from_srgb(0.5), 0);
+            CHECK(((look.color - orange).norm() < 1e-3) == is_cut);
+            cut += is_cut;
+        }
+        CHECK(cut == 1);
     }
 }
 

@@ -38,7 +38,7 @@ TEST_CASE("a machine's parameters are told with the unit of a number that has no
 
 TEST_CASE("a machine is told in lines that fit, but for where its file is") {
     for (const char* name :
-         {"bend", "cut", "floor", "hold", "press", "shelf", "stretch", "twist", "wring"}) {
+         {"bend", "cut", "floor", "hold", "press", "shelf", "slice", "stretch", "twist", "wring"}) {
         for (const std::string& line : swage::lines_of(run_swage({"machines", name}).out)) {
             if (line.ends_with(".toml")) continue;
             INFO(line);

@@ -127,6 +127,12 @@ TEST_CASE("looks of what cannot come about are told") {
         {"a cut alone",
          scene("rubber\"\n", "cut\"\n", "[skin]\nroughness = 0\n"),
          {"10:13: warning: roughness has no effect: no material breaks"}},
+        {"an inside that nothing lays open",
+         with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\ncut_color = [1, 0, 0]\n"),
+         {"3:13: warning: cut_color has no effect: no machine cuts, and no material breaks"}},
+        {"an inside that has no such colour",
+         with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\ncut_color = [1, 0, 2]\n"),
+         {"3:13: cut_color = [1, 0, 2]: red, green and blue must each be 0 to 1"}},
         {"nothing yields",
          scene("rubber\"\n", bend,
                "[render]\ncolor = \"plastic_strain\"\n[output]\n"
