@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "pipeline/simulate.h"
+#include "pipeline/stage_products.h"
 
 namespace swage {
 
@@ -109,6 +109,13 @@ std::optional<KeptRun> kept_by_earlier_run(const SceneSpec& scene, const RunDire
              directory.root().string());
     }
     return std::nullopt;
+}
+
+void forget_what_is_done(const RunDirectory& directory, const SceneSpec& scene) {
+    if (!scene.output.keep_stages) return directory.forget_kept();
+    std::error_code ignored;
+    fs::remove(directory.stage_mark(), ignored);
+    fs::remove(directory.kept_motion(), ignored);
 }
 
 }  // namespace swage

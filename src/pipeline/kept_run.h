@@ -15,11 +15,13 @@ struct KeptRun {
     std::optional<Reached> reached;  // none: no stage is finished
     std::optional<StageMark> mark;   // within the stage after those
     std::filesystem::path motion;    // which holds its motion
-    const MotionMark& motion_mark() const { return mark ? mark->motion : reached->motion; }
 };
 
 // After as many stages as can be; what is not whole is told of. Throws Error(foreign) where a run
 // that is to go on from stages that are the same has none.
 std::optional<KeptRun> kept_by_earlier_run(const SceneSpec& scene, const RunDirectory& directory);
+
+// What a run that is done leaves to go on from: its stages, unless the scene wants none.
+void forget_what_is_done(const RunDirectory& directory, const SceneSpec& scene);
 
 }  // namespace swage

@@ -9,8 +9,10 @@
 #include "pipeline/draw.h"
 #include "pipeline/frame_store.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/kept_run.h"
 #include "pipeline/run_record.h"
 #include "pipeline/simulate.h"
+#include "pipeline/stage_products.h"
 #include "pipeline/use_watch.h"
 
 namespace swage {
@@ -113,8 +115,8 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
         log_info("{}: already simulated", directory.root().string());
     } else {
         record = begin_record(scene, options, identity, input);
-        ended = simulate(scene, input, cost.warning, directory, plots, record, watch,
-                         options.keep_every);
+        ended = simulate({scene, input, directory, plots, record, watch, options.keep_every},
+                         cost.warning);
     }
     const int reached = record.at("frames").get<int>();
     if (ended.interrupted) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
 #include <utility>
 
 #include "base/failure.h"
@@ -16,7 +15,7 @@
 #include "pipeline/kept_run.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage.h"
-#include "scene/product_names.h"
+#include "pipeline/stage_products.h"
 
 namespace swage {
 
@@ -28,14 +27,14 @@ namespace {
 constexpr std::uint64_t kRecordRoom = 64 << 10, kStageRecordRoom = 16 << 10;
 
 // Everything at its start.
-Reached molded(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
-               Stopwatch& watch) {
+Reached molded(const SimulationContext& context, StartWarnings at_start) {
+    const std::vector<InputMesh>& input = context.input;
     Reached reached;
     std::vector<WorkPiece>& bodies = reached.bodies;
     for (std::size_t b = 0; b < input.size(); ++b) {
         {
-            const auto lap = watch.lap("mold");
-            bodies.push_back(make_work_piece(input[b], scene.body[b], scene.skin));
+            const auto lap = context.watch.lap("mold");
+            bodies.push_back(make_work_piece(input[b], context.scene.body[b], context.scene.skin));
         }
         for (const std::string& warning :
              warnings_of_mold(bodies[b].name, input.size() > 1, bodies[b].finding)) {
@@ -49,7 +48,7 @@ Reached molded(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
                  1e3 * matter.lattice.spacing, matter.particle_count(), matter.connection_count(),
                  matter.mass());
     }
-    at_start.bodies = warnings_of_bodies(scene, named(bodies));
+    at_start.bodies = warnings_of_bodies(context.scene, named(bodies));
     for (const auto* untold : {&at_start.strength, &at_start.bodies}) {
         for (const std::string& warning : *untold) log_warning("{}", warning);
     }
@@ -57,217 +56,264 @@ Reached molded(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     return reached;
 }
 
-// What the first of them leave in a run directory, but for endings.
-std::vector<fs::path> products_of_stages(const SceneSpec& scene, int count) {
-    const fs::path meshes = "meshes", curves = "curves";
-    std::vector<fs::path> products;
-    for (int s = 0; s < count; ++s) {
-        const StageSpec& stage = scene.stage[static_cast<std::size_t>(s)];
-        for (const std::string& table : table_names(stage)) products.push_back(curves / table);
-        for (const BodySpec& body : scene.body) {
-            products.push_back(meshes / mesh_name(scene, stage, body));
+// From its start, or from where an earlier run of the same scene got to, stage by stage.
+class SimulationRun {
+  public:
+    SimulationRun(const SimulationContext& context, StartWarnings at_start)
+        : context_(context),
+          kept_(kept_by_earlier_run(context.scene, context.directory)),
+          reached_(start(std::move(at_start))),
+          recorder_(make_recorder()),
+          checkpoint_(checkpoint_now()),
+          keeper_(context.directory, recorder_, context.watch, context.keep_every,
+                  [this] { note(); }),
+          progress_("simulate", frame_count(context.scene) - 1,
+                    std::max(0, recorder_.frame_count() - 1)) {
+        take_up_record();
+        tell_where_it_starts();
+    }
+
+    Ended run() {
+        while (!is_done()) {
+            work_stage();
+            if (ended_.early()) break;
+            ++reached_.stages;
+            if (!is_done() || context_.scene.output.keep_stages) keep_stages();
+            if (!is_done()) draw_plots();
         }
-    }
-    return products;
-}
-
-// Whether that could be written; the run goes on all the same.
-bool keep(const RunDirectory& directory, MotionRecorder& recorder, Stopwatch& watch,
-          Reached& reached) {
-    const auto lap = watch.lap("write");
-    try {
-        make_folder(directory.resume());
-        recorder.keep(directory.kept_motion());
-        reached.motion = recorder.mark();
-        reached.skin = recorder.skins();
-        reached.seconds = watch.phases();
-        write_checkpoint(directory.checkpoint(reached.stages), directory.stage_keys(), reached);
-        return true;
-    } catch (const std::exception& error) {
-        const std::optional<Error> failure = failure_of(error);
-        if (!failure) throw;
-        log_warning("{}; no run can go on from here", failure->what());
-        return false;
-    }
-}
-
-}  // namespace
-
-fs::path missing_product(const SceneSpec& scene, const RunDirectory& directory, int stages) {
-    for (const fs::path& product : products_of_stages(scene, stages)) {
-        const bool is_mesh = product.parent_path() == "meshes";
-        for (const char* ending : is_mesh ? std::vector{".obj", ".ply"} : std::vector{".csv"}) {
-            const fs::path file = directory.root() / fs::path(product).concat(ending);
-            std::error_code error;
-            if (!fs::exists(file, error)) return file;
-        }
-    }
-    return {};
-}
-
-void forget_what_is_done(const RunDirectory& directory, const SceneSpec& scene) {
-    if (!scene.output.keep_stages) return directory.forget_kept();
-    std::error_code ignored;
-    fs::remove(directory.stage_mark(), ignored);
-    fs::remove(directory.kept_motion(), ignored);
-}
-
-Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
-               RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch,
-               std::optional<double> keep_every) {
-    std::optional<KeptRun> kept = kept_by_earlier_run(scene, directory);
-    const MotionMark motion = kept ? kept->motion_mark() : MotionMark{};
-    Reached reached;
-    if (!kept || !kept->reached || directory.is_changed()) {
-        // What is told of the start foresees later stages too.
-        reached = molded(scene, input, std::move(at_start), watch);
-    }
-    if (kept && kept->reached) {
-        if (directory.is_changed()) kept->reached->start_warning = std::move(reached.start_warning);
-        reached = std::move(*kept->reached);
-    }
-    StageMark* mark = kept && kept->mark ? &*kept->mark : nullptr;
-    const bool goes_on_within = mark != nullptr;  // the stage that it was at
-    for (std::size_t b = 0; b < reached.matter.size(); ++b) {
-        record["bodies"][b]["matter"] = reached.matter[b];
-    }
-    const auto recorder =
-        kept ? std::make_unique<MotionRecorder>(
-                   directory.store(), kept->motion, motion, mark ? mark->bodies : reached.bodies,
-                   mark ? mark->skin : reached.skin, directory.is_changed())
-             : std::make_unique<MotionRecorder>(directory.store(), scene.output.fields);
-    int kept_stages = reached.stages;          // that are to be gone on from
-    int kept_frame = recorder->frame_count();  // the last of these
-    if (goes_on_within) {
-        kept_frame = reached.stage.empty() ? 0 : reached.stage.back().at("frames").at(1).get<int>();
-    }
-    if (kept) {
-        record["went_on_from"] = {{"stage", reached.stages + 1},
-                                  {"frame", recorder->frame_count()}};
-    }
-    StageKeeper* keeps = nullptr;
-    const auto add_where_it_goes_on = [&](Json& to) {
-        if (!keeps->frame() && kept_stages == 0) return;
-        to["goes_on_from"] = {{"stage", kept_stages + 1},
-                              {"frame", keeps->frame().value_or(kept_frame)}};
-    };
-    // What stands there if the process is killed.
-    const auto note = [&] {
-        Json now = record;
-        now["stages"] = reached.stage;
-        add_where_it_goes_on(now);
-        write_record(directory, now, watch);
-    };
-    StageKeeper keeper(directory, *recorder, watch, keep_every, note);
-    keeps = &keeper;
-
-    DiskReserve reserve;
-    bool has_begun = false;
-    const auto begin = [&] {
-        if (has_begun) return;
-        // Of the stage that it is within there may be meshes of frames.
-        directory.begin(products_of_stages(scene, kept ? reached.stages + goes_on_within : 0));
-        has_begun = true;
-        if (kept) {
-            directory.forget_kept_but(1, reached.stages);
+        begin();  // where no stage has come to its first frame
+        write_outcome();
+        if (!ended_.early()) {
+            forget_what_is_done(context_.directory, context_.scene);
         } else {
-            directory.forget_kept();
+            tell_where_it_goes_on();
         }
-        if (!goes_on_within) keeper.forget();
-        plots.forget_from(static_cast<std::size_t>(reached.stages));
-        reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
-                                           kStageRecordRoom * scene.stage.size());
-        make_folder(directory.root() / "meshes");
-        make_folder(directory.root() / "curves");
-        if (kept || fs::exists(directory.record())) note();
+        return ended_;
+    }
+
+  private:
+    // Finished stages that a later run can go on from, and the last frame of these.
+    struct Checkpoint {
+        int stages = 0, frame = 0;
     };
-    const auto stages = static_cast<int>(scene.stage.size());
-    if (kept) {
-        for (const auto& [phase, seconds] : mark ? mark->seconds : reached.seconds) {
-            watch.add(phase, seconds);
+
+    int stage_count() const { return static_cast<int>(context_.scene.stage.size()); }
+    bool is_done() const { return reached_.stages == stage_count(); }
+
+    // Within the stage that is at work or next; null: that begins at its start.
+    StageMark* mark() {
+        const bool is_within = kept_ && kept_->mark && kept_->mark->stages == reached_.stages;
+        return is_within ? &*kept_->mark : nullptr;
+    }
+
+    Checkpoint checkpoint_now() const {
+        const Json& stage = reached_.stage;
+        return {reached_.stages, stage.empty() ? 0 : stage.back().at("frames").at(1).get<int>()};
+    }
+
+    Reached start(StartWarnings at_start) {
+        if (!kept_ || !kept_->reached) return molded(context_, std::move(at_start));
+        Reached reached = std::move(*kept_->reached);
+        if (context_.directory.is_changed()) {
+            // What is told of the start foresees later stages too.
+            reached.start_warning = molded(context_, std::move(at_start)).start_warning;
         }
-        record["stages"] = reached.stage;
+        return reached;
     }
-    if (mark) {
-        log_info("goes on from frame {}, in stage {} of {}{}", mark->frame, reached.stages + 1,
-                 stages, directory.is_changed() ? ": " + directory.change() : "");
-    } else if (kept) {
-        log_info("goes on after stage {} of {}, frame {}{}", reached.stages, stages,
-                 recorder->frame_count(), directory.is_changed() ? ": " + directory.change() : "");
+
+    MotionRecorder make_recorder() {
+        const fs::path store = context_.directory.store();
+        if (!kept_) return MotionRecorder(store, context_.scene.output.fields);
+        const bool stays = context_.directory.is_changed();
+        if (const StageMark* at = mark()) {
+            return {store, kept_->motion, at->motion, at->bodies, at->skin, stays};
+        }
+        return {store, kept_->motion, reached_.motion, reached_.bodies, reached_.skin, stays};
     }
-    Progress progress("simulate", frame_count(scene) - 1, std::max(0, recorder->frame_count() - 1));
-    // Of what was there before nothing is lost for it.
-    const auto is_in_vain = [&] {
-        return recorder->frame_count() == 0 || (!has_begun && directory.is_changed());
-    };
-    Ended ended;
-    while (reached.stages < stages) {
-        const StageSpec& stage = scene.stage[static_cast<std::size_t>(reached.stages)];
-        StageMark* const from = std::exchange(mark, nullptr);
-        const StageContext context{scene, directory.root(), *recorder, watch, progress,
-                                   begin, keeper,           from};
-        keeper.begin(reached.stages, from ? std::optional(from->frame) : std::nullopt,
-                     kept_stages == reached.stages);
+
+    void take_up_record() {
+        Json& record = context_.record;
+        for (std::size_t b = 0; b < reached_.matter.size(); ++b) {
+            record["bodies"][b]["matter"] = reached_.matter[b];
+        }
+        if (!kept_) return;
+        record["went_on_from"] = {{"stage", reached_.stages + 1},
+                                  {"frame", recorder_.frame_count()}};
+        record["stages"] = reached_.stage;
+        for (const auto& [phase, seconds] : mark() ? mark()->seconds : reached_.seconds) {
+            context_.watch.add(phase, seconds);
+        }
+    }
+
+    void tell_where_it_starts() {
+        if (!kept_) return;
+        const RunDirectory& directory = context_.directory;
+        const std::string change = directory.is_changed() ? ": " + directory.change() : "";
+        if (const StageMark* at = mark()) {
+            log_info("goes on from frame {}, in stage {} of {}{}", at->frame, reached_.stages + 1,
+                     stage_count(), change);
+        } else {
+            log_info("goes on after stage {} of {}, frame {}{}", reached_.stages, stage_count(),
+                     recorder_.frame_count(), change);
+        }
+    }
+
+    void work_stage() {
+        const StageSpec& stage = context_.scene.stage[static_cast<std::size_t>(reached_.stages)];
+        StageMark* const from = mark();
+        const StageContext context{
+            context_.scene, context_.directory.root(), recorder_, context_.watch,
+            progress_,      [this] { begin(); },       keeper_,   from};
+        keeper_.begin(
+            reached_.stages, from ? std::optional(from->frame) : std::nullopt,
+            checkpoint_.stages == reached_.stages ? StageStart::is_kept : StageStart::is_lost);
         try {
             throw_if_interrupted();
-            StageOutcome outcome =
-                run_stage(stage, recorder->frame_count(), reached.bodies, context);
-            reached.stage.push_back(std::move(outcome.record));
-            reached.steps += outcome.steps;
-            std::move(outcome.warning.begin(), outcome.warning.end(),
-                      std::back_inserter(reached.warning));
-            ended = {outcome.stopped, outcome.interrupted};
+            take(run_stage(stage, recorder_.frame_count(), reached_.bodies, context));
         } catch (const Interrupted& interrupted) {
             // While the stage was set up.
             if (is_in_vain()) throw;
-            ended.interrupted = interrupted;
+            ended_.interrupted = interrupted;
         } catch (const std::exception& error) {
             // A stage that cannot be set up at what those before have made, or written, or that
             // wants for memory.
-            ended.stopped = failure_of(error);
-            if (is_in_vain() || !ended.stopped) throw;
+            ended_.stopped = failure_of(error);
+            if (is_in_vain() || !ended_.stopped) throw;
         }
-        if (ended.early()) break;
-        if (++reached.stages == stages && !scene.output.keep_stages) break;
-        if (keep(directory, *recorder, watch, reached)) {
-            kept_stages = reached.stages;
-            kept_frame = recorder->frame_count();
-            keeper.forget();
-            if (!scene.output.keep_stages) directory.forget_kept_but(kept_stages, kept_stages);
-            note();
+    }
+
+    void take(StageOutcome outcome) {
+        reached_.stage.push_back(std::move(outcome.record));
+        reached_.steps += outcome.steps;
+        std::move(outcome.warning.begin(), outcome.warning.end(),
+                  std::back_inserter(reached_.warning));
+        ended_ = {outcome.stopped, outcome.interrupted};
+    }
+
+    // Of what was there before nothing is lost for it.
+    bool is_in_vain() const {
+        return recorder_.frame_count() == 0 || (!has_begun_ && context_.directory.is_changed());
+    }
+
+    // What makes room for the run goes, once its first frame is to come.
+    void begin() {
+        if (has_begun_) return;
+        RunDirectory& directory = context_.directory;
+        // Of the stage that it is within there may be meshes of frames.
+        const int products = kept_ ? reached_.stages + (mark() ? 1 : 0) : 0;
+        directory.begin(products_of_stages(context_.scene, products));
+        has_begun_ = true;
+        if (kept_) {
+            directory.forget_kept_but(1, reached_.stages);
+        } else {
+            directory.forget_kept();
         }
-        if (reached.stages == stages) break;
-        const auto lap = watch.lap("plot");
-        plots.draw();
+        if (!mark()) keeper_.forget();
+        context_.plots.forget_from(static_cast<std::size_t>(reached_.stages));
+        reserve_.hold(directory.root(), 2 * json_text(context_.record).size() + kRecordRoom +
+                                            kStageRecordRoom * context_.scene.stage.size());
+        make_folder(directory.root() / "meshes");
+        make_folder(directory.root() / "curves");
+        if (kept_ || fs::exists(directory.record())) note();
     }
-    begin();
-    reserve.release();
-    recorder->finish();
-    record["stages"] = reached.stage;
-    record["frames"] = recorder->frame_count();
-    record["steps"] = reached.steps;
-    record["state_hash"] = hash_text(state_hash(reached.bodies));
-    Json& told = record["warnings"] = Json::array();
-    for (const auto* all : {&reached.start_warning, &reached.warning}) {
-        for (const std::string& one : *all) told.push_back(one);
+
+    void keep_stages() {
+        if (!write_reached()) return;
+        checkpoint_ = checkpoint_now();
+        keeper_.forget();
+        if (!context_.scene.output.keep_stages) {
+            context_.directory.forget_kept_but(checkpoint_.stages, checkpoint_.stages);
+        }
+        note();
     }
-    record["state"] = ended.interrupted ? RunState::interrupted
-                      : ended.stopped   ? RunState::stopped
-                                        : RunState::simulated;
-    if (ended.stopped) record["stopped"] = ended.stopped->what();
-    if (ended.early()) add_where_it_goes_on(record);
-    write_record(directory, record, watch);
-    if (!ended.early()) {
-        forget_what_is_done(directory, scene);
-    } else if (keeper.frame()) {
-        log_info("swage run goes on from frame {}, in stage {} of {}", *keeper.frame(),
-                 kept_stages + 1, stages);
-    } else if (kept_stages > 0) {
-        log_info("swage run goes on after stage {} of {}", kept_stages, stages);
-    } else {
-        log_info("swage run begins anew, as nothing of it is kept yet");
+
+    // Whether that could be done; the run goes on all the same.
+    bool write_reached() {
+        const RunDirectory& directory = context_.directory;
+        const auto lap = context_.watch.lap("write");
+        try {
+            make_folder(directory.resume());
+            recorder_.keep(directory.kept_motion());
+            reached_.motion = recorder_.mark();
+            reached_.skin = recorder_.skins();
+            reached_.seconds = context_.watch.phases();
+            write_checkpoint(directory.checkpoint(reached_.stages), directory.stage_keys(),
+                             reached_);
+            return true;
+        } catch (const std::exception& error) {
+            const std::optional<Error> failure = failure_of(error);
+            if (!failure) throw;
+            log_warning("{}; no run can go on from here", failure->what());
+            return false;
+        }
     }
-    return ended;
+
+    void draw_plots() {
+        const auto lap = context_.watch.lap("plot");
+        context_.plots.draw();
+    }
+
+    // What stands in run.json if the process is killed.
+    void note() {
+        Json now = context_.record;
+        now["stages"] = reached_.stage;
+        add_where_it_goes_on(now);
+        write_record(context_.directory, now, context_.watch);
+    }
+
+    void add_where_it_goes_on(Json& record) const {
+        if (!keeper_.frame() && checkpoint_.stages == 0) return;
+        record["goes_on_from"] = {{"stage", checkpoint_.stages + 1},
+                                  {"frame", keeper_.frame().value_or(checkpoint_.frame)}};
+    }
+
+    void write_outcome() {
+        Json& record = context_.record;
+        reserve_.release();
+        recorder_.finish();
+        record["stages"] = reached_.stage;
+        record["frames"] = recorder_.frame_count();
+        record["steps"] = reached_.steps;
+        record["state_hash"] = hash_text(state_hash(reached_.bodies));
+        Json& told = record["warnings"] = Json::array();
+        for (const auto* all : {&reached_.start_warning, &reached_.warning}) {
+            for (const std::string& one : *all) told.push_back(one);
+        }
+        record["state"] = ended_.interrupted ? RunState::interrupted
+                          : ended_.stopped   ? RunState::stopped
+                                             : RunState::simulated;
+        if (ended_.stopped) record["stopped"] = ended_.stopped->what();
+        if (ended_.early()) add_where_it_goes_on(record);
+        write_record(context_.directory, record, context_.watch);
+    }
+
+    void tell_where_it_goes_on() const {
+        if (keeper_.frame()) {
+            log_info("swage run goes on from frame {}, in stage {} of {}", *keeper_.frame(),
+                     checkpoint_.stages + 1, stage_count());
+        } else if (checkpoint_.stages > 0) {
+            log_info("swage run goes on after stage {} of {}", checkpoint_.stages, stage_count());
+        } else {
+            log_info("swage run begins anew, as nothing of it is kept yet");
+        }
+    }
+
+    const SimulationContext& context_;
+    std::optional<KeptRun> kept_;  // by an earlier run, which this goes on from
+    Reached reached_;
+    MotionRecorder recorder_;
+    Checkpoint checkpoint_;
+    StageKeeper keeper_;
+    DiskReserve reserve_;
+    bool has_begun_ = false;
+    Progress progress_;
+    Ended ended_;
+};
+
+}  // namespace
+
+Ended simulate(const SimulationContext& context, StartWarnings at_start) {
+    return SimulationRun(context, std::move(at_start)).run();
 }
 
 }  // namespace swage

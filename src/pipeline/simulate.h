@@ -3,7 +3,6 @@
 // scene in the same directory got to.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -26,18 +25,18 @@ struct Ended {
     bool early() const { return stopped || interrupted; }
 };
 
-// A mesh or a table of the first stages that is not there any more; empty: all are.
-std::filesystem::path missing_product(const SceneSpec& scene, const RunDirectory& directory,
-                                      int stages);
-
-// What a run that is done leaves to go on from: its stages, unless the scene wants none.
-void forget_what_is_done(const RunDirectory& directory, const SceneSpec& scene);
+struct SimulationContext {
+    const SceneSpec& scene;
+    const std::vector<InputMesh>& input;
+    RunDirectory& directory;
+    Plots& plots;
+    Json& record;  // begin_record's
+    Stopwatch& watch;
+    std::optional<double> keep_every;  // as StageKeeper takes it
+};
 
 // The motion file and run.json stand when it returns, and the plots of all stages but the last that
-// it did are tried. `record`: begin_record's. `at_start`: what can be said before anything is
-// molded. `keep_every`: as StageKeeper takes it.
-Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
-               RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch,
-               std::optional<double> keep_every);
+// it did are tried. `at_start`: what can be said before anything is molded.
+Ended simulate(const SimulationContext& context, StartWarnings at_start);
 
 }  // namespace swage

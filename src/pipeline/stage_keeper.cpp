@@ -15,10 +15,10 @@ constexpr double kTimes = 50;  // what keeping takes, until it is due again: a f
 
 }  // namespace
 
-void StageKeeper::begin(int stages, std::optional<int> frame, bool can) {
+void StageKeeper::begin(int stages, std::optional<int> frame, StageStart start) {
     stages_ = stages;
     frame_ = frame;
-    can_ = can;
+    can_ = start == StageStart::is_kept;
     since_ = Clock::now();
 }
 

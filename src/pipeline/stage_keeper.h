@@ -20,6 +20,9 @@ namespace swage {
 
 inline constexpr double kLeastKept = 5;  // [s] of work; less is soon done again
 
+// Whether a stage can be set up again as it began: at the start of a run always.
+enum class StageStart { is_kept, is_lost };
+
 class StageKeeper {
   public:
     // The references must outlive it. `every`: keeps it after so long [s]; none: as above. `note`:
@@ -32,8 +35,8 @@ class StageKeeper {
           every_(every),
           note_(std::move(note)) {}
 
-    // One begins after so many, or goes on from this frame. `can`: how it begins is kept too.
-    void begin(int stages, std::optional<int> frame, bool can);
+    // One begins after so many, or goes on from this frame.
+    void begin(int stages, std::optional<int> frame, StageStart start);
     bool is_due() const;
     // Where that cannot be written it is told, and nothing more is kept of this stage.
     void keep(int frame, std::string state, const std::vector<WorkPiece>& bodies);
