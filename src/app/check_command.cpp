@@ -149,7 +149,7 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     }
     line("frames", count_text(cost.frames));
     for (const StageSpec& stage : scene.stage) {
-        if (stage.sim.solver == Solver::quasistatic) continue;
+        if (!in_motion(stage.sim.solver)) continue;
         const std::string whose = scene.stage.size() == 1 ? "" : stage.name + ": ";
         line("film", whose + film_text(scene, stage));
     }

@@ -107,8 +107,6 @@ std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<InputMe
     return named;
 }
 
-bool moves(const StageSpec& stage) { return stage.sim.solver != Solver::quasistatic; }
-
 // As much as this many cells of the work-piece pressed as tools do.
 double softest_give(const SceneSpec& scene, const std::vector<InputMesh>& input,
                     const std::vector<Aggregate>& matter) {
@@ -142,16 +140,16 @@ void note_more_steps(const SceneSpec& scene, RunCost& cost) {
 }
 
 std::string what_time_hangs_on(const SceneSpec& scene) {
-    const auto any_stage = [&](const auto& test) {
-        return std::any_of(scene.stage.begin(), scene.stage.end(), test);
-    };
+    const bool has_tools =
+        scene.any_stage([](const StageSpec& stage) { return !stage.machine.tool.empty(); });
     std::vector<std::string> all;
-    if (scene.any_material([](const Material& m) { return m.breaks(); })) all.push_back("fracture");
-    if (scene.any_material([](const Material& m) { return m.yields(); }))
-        all.push_back("plastic flow");
-    if (any_stage(moves)) all.push_back("contact");
-    if (!any_stage(moves) && any_stage([](const StageSpec& s) { return !s.machine.tool.empty(); }))
+    if (scene.breaks()) all.push_back("fracture");
+    if (scene.yields()) all.push_back("plastic flow");
+    if (scene.moves()) {
+        all.push_back("contact");
+    } else if (has_tools) {
         all.push_back("slip");
+    }
     return all.empty() ? "how soon it comes to rest" : joined(all, " and ");
 }
 
@@ -169,9 +167,9 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
         load.surface_points += kPointsPerFace * surface_area(input[b].to_mold()) / (a * a);
     }
     for (const StageSpec& stage : scene.stage) {
-        const bool in_motion = moves(stage);
-        way = std::max(way, bytes_of_way(stage.machine, stage.frames, in_motion));
-        if (in_motion) load.steps_per_second = steps_per_second(scene, cost, matter, stage.sim);
+        const bool moves = in_motion(stage.sim.solver);
+        way = std::max(way, bytes_of_way(stage.machine, stage.frames, moves));
+        if (moves) load.steps_per_second = steps_per_second(scene, cost, matter, stage.sim);
         const bool counted = &stage == &scene.stage.front();
         const StageTime time = stage_time(scene, stage, load, counted ? equilibria : 0);
         cost.steps.add(time.steps);
@@ -291,7 +289,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const Machine machine = stage_machine(first, matter[0], beside, scene.duration_of(first), skin);
     cost.place = machine_places(scene, machine, matter[0], beside, skin);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
-    for (std::string& amiss : tool_overlaps(machine, bodies, moves(first))) {
+    for (std::string& amiss : tool_overlaps(machine, bodies, in_motion(first.sim.solver))) {
         cost.warning.bodies.push_back(std::move(amiss));
     }
     for (const StageSpec& stage : scene.stage) {
@@ -300,12 +298,12 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     }
     const Legs legs = stage_legs(first, machine, std::min(first.frames, kSampledFrames), matter[0]);
     const long equilibria =
-        first.sim.solver == Solver::quasistatic
-            ? std::max<long>(first.frames,
+        in_motion(first.sim.solver)
+            ? 0
+            : std::max<long>(first.frames,
                              equilibria_along(matter[0], machine.apparatus, first.sim,
                                               stage_drives(first, machine, legs.leg, 1,
-                                                           scene.duration_of(first))))
-            : 0;
+                                                           scene.duration_of(first))));
     add_up(cost, scene, input, options, matter, equilibria);
     return cost;
 }
@@ -313,7 +311,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
 std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
     for (const StageSpec& stage : scene.stage) {
         const Solver solver = stage.sim.solver;
-        if (solver == Solver::quasistatic || solver == Solver::implicit_steps) continue;
+        if (!follows_all_motion(solver)) continue;
         std::vector<double> steps;
         for (const Aggregate& body : matter) {
             steps.push_back(explicit_steps_per_second(body, stage.sim));

@@ -96,16 +96,12 @@ double kept_bytes(const SceneSpec& scene, double stage, double within, double pi
 
 double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
                         const DiskShare& of) {
-    const bool moves =
-        std::any_of(scene.stage.begin(), scene.stage.end(),
-                    [](const StageSpec& stage) { return stage.sim.solver != Solver::quasistatic; });
-    const bool damps =
-        moves && scene.any_material([](const Material& m) { return m.damping_ratio > 0; });
-    const bool yields = scene.any_material([](const Material& m) { return m.yields(); });
+    const bool damps = scene.moves() && scene.damps();
     const bool shifts = scene.any_material([](const Material& m) { return m.shifts(); });
-    double bytes = of.matter + of.vertices * kKeptBytesPerVertex +
-                   of.particles * (kKeptBytesPerParticle + (damps ? kDampedBytes : 0) +
-                                   (yields ? kYieldedBytes : 0) + (shifts ? kShiftedBytes : 0));
+    double bytes =
+        of.matter + of.vertices * kKeptBytesPerVertex +
+        of.particles * (kKeptBytesPerParticle + (damps ? kDampedBytes : 0) +
+                        (scene.yields() ? kYieldedBytes : 0) + (shifts ? kShiftedBytes : 0));
     for (const InputMesh& one : input) {
         if (scene.skin.kind == SkinKind::boundary) {
             bytes += kLookBytesPerVertex * static_cast<double>(one.mesh.position.size());
@@ -116,7 +112,7 @@ double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& in
 }
 
 double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, DiskShare of) {
-    const bool breaks = scene.any_material([](const Material& m) { return m.breaks(); });
+    const bool breaks = scene.breaks();
     const double broken = scene.skin.roughness > 0 ? kRoughVertices : kBrokenVertices;
     if (breaks) of.vertices += broken * of.cells;
     const double vertices = of.vertices;
@@ -125,7 +121,7 @@ double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, D
     for (const StageSpec& stage : scene.stage) {
         bytes += kStageBytes + machine_bytes(stage.machine);
         if (stage.remold) ++skins;
-        if (stage.sim.solver != Solver::quasistatic) {
+        if (in_motion(stage.sim.solver)) {
             bytes += kBodyFrameBytes * static_cast<double>(scene.body.size()) * stage.frames;
         }
         if (breaks || !stage.machine.blade.empty()) skins += stage.frames;

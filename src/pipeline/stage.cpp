@@ -110,9 +110,9 @@ class StageRun {
             log_info("{}: {}", stage.name, limit);
         }
         for (const std::string& note : machine_.notes) log_info("{}: {}", stage.name, note);
-        std::vector<std::string> told = tool_overlaps(
-            machine_, named(bodies),
-            stage.sim.solver != Solver::quasistatic && &stage == &context.scene.stage.front());
+        std::vector<std::string> told =
+            tool_overlaps(machine_, named(bodies),
+                          in_motion(stage.sim.solver) && &stage == &context.scene.stage.front());
         const std::string note = stiffness_note(stage, named(bodies));
         if (!note.empty()) told.push_back(note);
         for (const std::string& warning : told) {
@@ -218,7 +218,7 @@ class StageRun {
         curves_.emplace(stage_.name, before_, simulation.loads(way_.now()), first_,
                         apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size(),
                         turn_axes(machine_), probes());
-        if (in_motion()) body_table_.emplace(before_, bodies_, first_);
+        if (in_motion(stage_.sim.solver)) body_table_.emplace(before_, bodies_, first_);
     }
 
     // What its frames change, beside the bodies and their simulation.
@@ -252,7 +252,6 @@ class StageRun {
         }
     }
 
-    bool in_motion() const { return stage_.sim.solver != Solver::quasistatic; }
     bool cuts_any() const { return !machine_.apparatus.blade.empty(); }
 
     // The machine goes through the n-th frame; false where that was given up. What legs of it were

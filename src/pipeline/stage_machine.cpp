@@ -87,9 +87,9 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
 
 Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames,
                 const Aggregate& work_piece, double begin) {
-    const bool in_motion = stage.sim.solver != Solver::quasistatic;
     return at_stage(stage, [&] {
-        return legs_of(machine, frames, kLegSlack * work_piece.lattice.spacing, in_motion, begin);
+        return legs_of(machine, frames, kLegSlack * work_piece.lattice.spacing,
+                       in_motion(stage.sim.solver), begin);
     });
 }
 

@@ -74,7 +74,7 @@ double unresolved(const StageEnd& end) {
         const double a = matter.lattice.spacing, volume = matter.volume();
         const double held = volume / (a * a) + end.stage.sim.grip_stiffness * gripped / a;
         sum += modulus * (1e-16 * volume + off * held * way);
-        if (end.stage.sim.solver == Solver::quasistatic) {
+        if (!in_motion(end.stage.sim.solver)) {
             sum += end.totals.residual * least_push(matter) * way;
         }
     }
@@ -118,7 +118,7 @@ std::string how_deep(const Books& last, const StageEnd& end, const std::string& 
 // is little beside how it flies. A body that is pressed by right is strained, and holds more
 // itself. Of several, the one that is thrown fastest. Empty: none is.
 std::string pressed_at_start(const StageEnd& end) {
-    if (end.stage.sim.solver == Solver::quasistatic) return {};
+    if (!in_motion(end.stage.sim.solver)) return {};
     std::size_t worst = 0, count = 0;
     double fastest = 0, thrown_by = 0;
     for (std::size_t b = 0; b < end.last.body.size(); ++b) {
@@ -147,7 +147,7 @@ std::string pressed_at_start(const StageEnd& end) {
 // What to look for at the end: folds and pieces that nothing has kept apart, and at rest also
 // whether what meets is held.
 bool may_lie_in_itself(const StageEnd& end) {
-    return end.stage.sim.solver == Solver::quasistatic || !end.stage.sim.self_contact;
+    return !in_motion(end.stage.sim.solver) || !end.stage.sim.self_contact;
 }
 
 // How deep a body lies in itself, and what is to be said of that, if anything.
@@ -181,7 +181,7 @@ std::string swollen(const StageEnd& end, const WorkPiece& body) {
 }
 
 std::string how_to_close(Solver solver) {
-    if (solver == Solver::quasistatic) {
+    if (!in_motion(solver)) {
         return "the work of tools is inaccurate between frames that are far apart: try more frames";
     }
     if (solver == Solver::implicit_steps) {
@@ -207,10 +207,11 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
         verdict.warning.push_back(name + ": " + sentence);
     };
     if (whole && !end.machine.apparatus.tool.empty() && !end.totals.touched) {
-        warn(sim.solver == Solver::quasistatic
-                 ? "none of its tools presses on the work-piece at the end of any frame: none "
-                   "reached it, or they separated within a frame, as happens where nothing holds it"
-                 : "its tools never touched the work-piece");
+        warn(in_motion(sim.solver)
+                 ? "its tools never touched the work-piece"
+                 : "none of its tools presses on the work-piece at the end of any frame: none "
+                   "reached it, or they separated within a frame, as happens where nothing holds "
+                   "it");
     }
     if (whole && !end.machine.apparatus.blade.empty() && end.totals.severed == 0) {
         warn("the blade met no matter: it passed beside the work-piece or through a gap in it");
@@ -225,11 +226,11 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     const double share = unaccounted(end.first, end.last, end.totals.stored, unresolved(end));
     const double taken = end.last.friction + end.last.plastic;
     // At rest, what snaps or slips through is lost, and no mistake.
-    if (sim.solver == Solver::quasistatic ? share < -kMostGain : std::abs(share) > kMostGain) {
+    if (in_motion(sim.solver) ? std::abs(share) > kMostGain : share < -kMostGain) {
         warn(fmt::format("the energy books do not close: {:.3g} % of the energy involved is {}; {}",
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
                          how_to_close(sim.solver)));
-    } else if (sim.solver == Solver::quasistatic && share < -kLittleGain &&
+    } else if (!in_motion(sim.solver) && share < -kLittleGain &&
                taken > kLittleGain * (end.last.remainder / share) &&
                -end.last.remainder > kMostOfTaken * taken) {
         warn(

@@ -56,18 +56,9 @@ constexpr double kSecondsPerByte = 20e-9;  // written
 constexpr CostRange kSkins = {0.3e-6, 15e-6};
 constexpr double kSecondsPerStill = 0.04, kSecondsPerPixel = 3.6e-7;
 
-bool breaks(const SceneSpec& scene) {
-    return scene.any_material([](const Material& m) { return m.breaks(); });
-}
-bool yields(const SceneSpec& scene) {
-    return scene.any_material([](const Material& m) { return m.yields(); });
-}
 bool yields_as_springs(const SceneSpec& scene) {
     return scene.any_material(
         [](const Material& m) { return m.yields() && m.mechanics == Mechanics::springs; });
-}
-bool damps(const SceneSpec& scene) {
-    return scene.any_material([](const Material& m) { return m.damping_ratio > 0; });
 }
 
 double least_damping(const SceneSpec& scene) {
@@ -123,12 +114,12 @@ StageTime relaxed(const SceneSpec& scene, const StageSpec& stage, const WorkLoad
     CostRange count = kEquilibria.times(stage.frames);
     if (!touches) count = {double(stage.frames), 1.5 * stage.frames};
     if (equilibria > 0) count = {double(equilibria), 1.1 * double(equilibria)};
-    if (breaks(scene)) count.most *= touches ? kCracking : kCrackingAlong;
+    if (scene.breaks()) count.most *= touches ? kCracking : kCrackingAlong;
     if (!touches) {
-        const CostRange each = (yields(scene) || breaks(scene) ? kYielding : kSmooth);
+        const CostRange each = (scene.yields() || scene.breaks() ? kYielding : kSmooth);
         const CostRange seconds = {count.least * each.least * load.particles,
                                    count.most * each.most * load.particles};
-        const double last = yields(scene) || breaks(scene) ? kRelaxed : kNewtonStep;
+        const double last = scene.yields() || scene.breaks() ? kRelaxed : kNewtonStep;
         return {{seconds.least / (kNewtonStep * load.particles),
                  seconds.most / (last * load.particles)},
                 seconds};
@@ -145,7 +136,7 @@ StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& 
     const bool is_driven = !stage.machine.stands() || !stage.machine.load.empty();
     const double elastic = scene.duration_of(stage) * load.steps_per_second;
     CostRange steps = {elastic, elastic};
-    if (yields(scene)) {
+    if (scene.yields()) {
         const double driven = is_driven ? kFlattenedByMachines : 1;
         steps.least *= std::min(kFlattest, 1 + kFlattened.least * by.flowing.least);
         steps.most *= std::min(kFlattest, std::max(driven, 1 + kFlattened.most * by.flowing.most));
@@ -156,7 +147,7 @@ StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& 
         steps = steps.times(more_steps(scene, stage.sim.solver));
     }
     double each =
-        load.particles * (kCells + (damps(scene) ? kDashpots : 0) + (yields(scene) ? kFlow : 0));
+        load.particles * (kCells + (scene.damps() ? kDashpots : 0) + (scene.yields() ? kFlow : 0));
     if (stage.sim.medium_density > 0 || stage.sim.directional_drag > 0) {
         each += load.surface_points * kDrag;
     }
@@ -164,7 +155,7 @@ StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& 
     if (!stage.machine.tool.empty()) meeting += load.surface_points * kTools;
     if (scene.body.size() > 1 || stage.sim.self_contact) meeting += load.surface_points * kMeets;
     if (yields_as_springs(scene)) meeting += load.particles * kFlowOfSprings;
-    if (breaks(scene)) {
+    if (scene.breaks()) {
         const double driven = is_driven ? kBreakingByMachines : 0;
         steps.most *= kTakenBack;
         meeting +=
@@ -187,7 +178,7 @@ double more_steps(const SceneSpec& scene, Solver solver) {
 
 StageTime stage_time(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load,
                      long equilibria) {
-    if (stage.sim.solver == Solver::quasistatic) return relaxed(scene, stage, load, equilibria);
+    if (!in_motion(stage.sim.solver)) return relaxed(scene, stage, load, equilibria);
     if (stage.sim.solver != Solver::implicit_steps) return moved(scene, stage, load);
     const double steps = kImplicitSteps * stage.frames;
     const double tools = stage.machine.tool.empty() ? 1 : kImplicitAtTools;
@@ -197,7 +188,7 @@ StageTime stage_time(const SceneSpec& scene, const StageSpec& stage, const WorkL
 }
 
 CostRange writing_time(const SceneSpec& scene, double frames, double bytes, double particles) {
-    bool parts = breaks(scene);
+    bool parts = scene.breaks();
     for (const StageSpec& stage : scene.stage) parts = parts || !stage.machine.blade.empty();
     CostRange seconds = {0.2 * kSecondsPerByte * bytes, kSecondsPerByte * bytes};
     if (parts || scene.skin.kind == SkinKind::boundary) {

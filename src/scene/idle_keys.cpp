@@ -29,19 +29,6 @@ struct Section {
     }
 };
 
-template <typename Test>
-bool any_stage(const SceneSpec& scene, const Test& test) {
-    return std::any_of(scene.stage.begin(), scene.stage.end(), test);
-}
-
-bool relaxes(const StageSpec& stage) { return stage.sim.solver == Solver::quasistatic; }
-bool is_implicit(const StageSpec& stage) { return stage.sim.solver == Solver::implicit_steps; }
-// By steps that know what materials say of motion.
-bool moves_by_steps(const StageSpec& stage) { return !relaxes(stage) && !is_implicit(stage); }
-bool is_explicit(const StageSpec& stage) {
-    return stage.sim.solver == Solver::explicit_steps || stage.sim.solver == Solver::euler;
-}
-
 bool meets_anything(const SceneSpec& scene, const StageSpec& stage) {
     return !stage.machine.tool.empty() || scene.body.size() > 1 || stage.sim.self_contact;
 }
@@ -53,13 +40,14 @@ std::string with_solver(const Section& at) {
     return fmt::format(" with solver = \"{}\"", name_of(at.stage->sim.solver));
 }
 std::string unless_it_relaxes(const Section& at) {
-    return relaxes(*at.stage) ? "" : with_solver(at);
+    return in_motion(at.stage->sim.solver) ? with_solver(at) : "";
 }
 std::string unless_it_makes_steps(const Section& at) {
-    return is_explicit(*at.stage) || is_implicit(*at.stage) ? "" : with_solver(at);
+    const Solver solver = at.stage->sim.solver;
+    return is_explicit(solver) || solver == Solver::implicit_steps ? "" : with_solver(at);
 }
-std::string unless_it_moves_by_steps(const Section& at) {
-    return moves_by_steps(*at.stage) ? "" : with_solver(at);
+std::string unless_it_follows_all_motion(const Section& at) {
+    return follows_all_motion(at.stage->sim.solver) ? "" : with_solver(at);
 }
 
 constexpr const char* kNothingMeets =
@@ -68,7 +56,7 @@ constexpr const char* kNothingMeets =
 
 std::string unless_something_meets(const Section& at) {
     const auto meets = [&](const StageSpec& stage) { return meets_anything(at.scene, stage); };
-    return any_stage(at.scene, meets) ? "" : kNothingMeets;
+    return at.scene.any_stage(meets) ? "" : kNothingMeets;
 }
 // Whether the friction of some tool goes by that of the material.
 bool has_tool_of_material_friction(const StageSpec& stage) {
@@ -97,28 +85,22 @@ std::string unless_something_rubs(const Section& at) {
     const auto rubs = [&](const StageSpec& stage) {
         // In motion a tool's holds before it slides in the proportion of the material's.
         const bool meets_its_like = at.scene.body.size() > 1 || stage.sim.self_contact;
-        return meets_its_like || (!relaxes(stage) && meets_anything(at.scene, stage)) ||
+        return meets_its_like || (in_motion(stage.sim.solver) && meets_anything(at.scene, stage)) ||
                has_tool_of_material_friction(stage);
     };
-    return any_stage(at.scene, rubs)
+    return at.scene.any_stage(rubs)
                ? ""
                : ": every tool has its own friction, and nothing else can touch";
 }
 constexpr const char* kNothingMoves =
     " unless a stage is in motion (solver = \"explicit\", \"euler\" or \"energy-stepped\")";
 std::string unless_something_moves(const Section& at) {
-    return any_stage(at.scene, moves_by_steps) ? "" : kNothingMoves;
+    const auto moves = [](const StageSpec& stage) { return follows_all_motion(stage.sim.solver); };
+    return at.scene.any_stage(moves) ? "" : kNothingMoves;
 }
 std::string unless_something_strikes(const Section& at) {
     const std::string still = unless_something_moves(at);
     return still.empty() ? unless_something_meets(at) : still;
-}
-
-bool breaks(const SceneSpec& scene) {
-    return scene.any_material([](const Material& m) { return m.breaks(); });
-}
-bool yields(const SceneSpec& scene) {
-    return scene.any_material([](const Material& m) { return m.yields(); });
 }
 
 std::string unless_skin_is_mounted(const Section& at) {
@@ -139,10 +121,10 @@ bool creases_matter(const SceneSpec& scene) {
 
 // Why a field is 0 everywhere; empty: it need not be.
 std::string tells_nothing(const std::string& field, const SceneSpec& scene) {
-    if ((field == "plastic_strain" || field == "yield_use") && !yields(scene)) {
+    if ((field == "plastic_strain" || field == "yield_use") && !scene.yields()) {
         return ": no material yields (yield_stress, flow_curve), so it is 0 everywhere";
     }
-    if (field == "strength_use" && !breaks(scene)) {
+    if (field == "strength_use" && !scene.breaks()) {
         return ": no material breaks (strength, toughness), so it is 0 everywhere";
     }
     return {};
@@ -177,8 +159,7 @@ const std::vector<IdleKey> kOfMaterials = {
     // A ratio of 0 says what is so anyhow. Implicit steps are told of where they are chosen.
     {"damping_ratio",
      [](const Section& at) -> std::string {
-         const bool is_still = !any_stage(at.scene, [](const StageSpec& s) { return !relaxes(s); });
-         return is_still && at.material->damping_ratio > 0 ? kNothingMoves : "";
+         return !at.scene.moves() && at.material->damping_ratio > 0 ? kNothingMoves : "";
      }},
     {"friction", unless_something_rubs},
     {"static_friction", unless_something_strikes},
@@ -205,7 +186,7 @@ const std::vector<IdleKey> kOfSkins = {
      }},
     {"roughness",
      [](const Section& at) -> std::string {
-         return breaks(at.scene) ? "" : ": no material breaks (strength, toughness)";
+         return at.scene.breaks() ? "" : ": no material breaks (strength, toughness)";
      }},
 };
 
@@ -213,11 +194,11 @@ const std::vector<IdleKey> kOfStages = {
     {"tolerance", unless_it_relaxes},
     {"iteration_limit", unless_it_relaxes},
     {"halving_limit", unless_it_relaxes},
-    {"step_safety", unless_it_moves_by_steps},
+    {"step_safety", unless_it_follows_all_motion},
     {"retry_limit", unless_it_makes_steps},
     {"self_contact",
      [](const Section& at) -> std::string {
-         return is_implicit(*at.stage) ? with_solver(at) : "";
+         return at.stage->sim.solver == Solver::implicit_steps ? with_solver(at) : "";
      }},
     {"sleep",
      [](const Section& at) -> std::string {
@@ -240,17 +221,17 @@ const std::vector<IdleKey> kOfStages = {
                     ? fmt::format(": machine {} has no grip", at.stage->machine.name)
                     : "";
      }},
-    {"medium_density", unless_it_moves_by_steps},
+    {"medium_density", unless_it_follows_all_motion},
     {"drag_coefficient",
      [](const Section& at) -> std::string {
-         const std::string other = unless_it_moves_by_steps(at);
+         const std::string other = unless_it_follows_all_motion(at);
          if (!other.empty() || at.stage->sim.medium_density > 0) return other;
          return " without medium_density";
      }},
-    {"directional_drag", unless_it_moves_by_steps},
+    {"directional_drag", unless_it_follows_all_motion},
     {"directional_drag_along",
      [](const Section& at) -> std::string {
-         const std::string other = unless_it_moves_by_steps(at);
+         const std::string other = unless_it_follows_all_motion(at);
          if (!other.empty() || at.stage->sim.directional_drag > 0) return other;
          return " without directional_drag";
      }},
@@ -263,7 +244,7 @@ const std::vector<IdleKey> kOfStages = {
 const std::vector<IdleKey> kOfRender = {
     {"tools",
      [](const Section& at) -> std::string {
-         const bool any = any_stage(at.scene, [](const StageSpec& s) {
+         const bool any = at.scene.any_stage([](const StageSpec& s) {
              return !s.machine.tool.empty() || !s.machine.grip.empty() || !s.machine.blade.empty();
          });
          return any ? "" : ": no machine has a tool, a grip or a blade";

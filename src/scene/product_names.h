@@ -18,7 +18,7 @@ inline std::string body_table_name(const StageSpec& stage) { return stage.name +
 
 // Of all its tables: its curves', and of what moves its bodies'.
 inline std::vector<std::string> table_names(const StageSpec& stage) {
-    if (stage.sim.solver == Solver::quasistatic) return {stage.name};
+    if (!in_motion(stage.sim.solver)) return {stage.name};
     return {stage.name, body_table_name(stage)};
 }
 

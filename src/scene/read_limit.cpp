@@ -74,7 +74,7 @@ void read_limits(TableReader& stage, Solver solver, MachineSpec& machine) {
         LimitSpec limit;
         limit.place = text_place(node->place);
         MistakeList& mistakes = stage.reading().mistakes;
-        if (solver != Solver::quasistatic && !describes) {
+        if (in_motion(solver) && !describes) {
             mistakes.add(
                 node->place,
                 fmt::format("a limit needs equilibria: with solver = \"{}\" forces oscillate, and "

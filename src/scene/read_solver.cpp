@@ -76,7 +76,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
         solvers.emplace_back(name_of(solver), solver);
     }
     table.choice<Solver>("solver", solvers, sim.solver);
-    if (sim.solver == Solver::quasistatic && (several || starts)) {
+    if (!in_motion(sim.solver) && (several || starts)) {
         table.mistake("solver", fmt::format("solver = \"quasistatic\" computes equilibria and "
                                             "allows {}: leave it out, or use solver = \"explicit\"",
                                             several ? "only one body" : "no velocity and no spin"));
@@ -99,14 +99,13 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
             "grip: a low grip_stiffness of 1 may keep it stable, else use solver = \"explicit\"");
     }
     const bool is_implicit = sim.solver == Solver::implicit_steps;
-    const bool is_explicit = sim.solver == Solver::explicit_steps || sim.solver == Solver::euler;
     const auto number = [&](const std::string& key, double low, double high, double& into) {
         table.quantity(key, Quantity::number, between(low, high), into);
     };
     number("tolerance", 1e-4, 0.1, sim.tolerance);
     table.whole("iteration_limit", 100, 1'000'000, sim.iteration_limit);
     table.whole("halving_limit", 0, 8, sim.halving_limit);
-    number("contact_stiffness", is_explicit ? 0.01 : 0.5, 100, sim.contact_stiffness);
+    number("contact_stiffness", is_explicit(sim.solver) ? 0.01 : 0.5, 100, sim.contact_stiffness);
     number("grip_stiffness", 1, 100, sim.grip_stiffness);
     table.quantity("step_safety", Quantity::number, {.low = 0, .high = 1, .low_open = true},
                    sim.step_safety);

@@ -2,6 +2,7 @@
 // A scene as its file says it, checked, in SI, with every default filled in.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -116,6 +117,23 @@ struct SceneSpec {
             }
         }
         return false;
+    }
+    template <typename Test>
+    bool any_stage(const Test& test) const {
+        return std::any_of(stage.begin(), stage.end(), test);
+    }
+    // Whether any of its materials does, or any of its stages.
+    bool breaks() const {
+        return any_material([](const Material& m) { return m.breaks(); });
+    }
+    bool yields() const {
+        return any_material([](const Material& m) { return m.yields(); });
+    }
+    bool damps() const {
+        return any_material([](const Material& m) { return m.damping_ratio > 0; });
+    }
+    bool moves() const {
+        return any_stage([](const StageSpec& one) { return in_motion(one.sim.solver); });
     }
     double duration_of(const StageSpec& of) const {  // [s]
         return of.duration > 0 ? of.duration

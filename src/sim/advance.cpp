@@ -247,7 +247,7 @@ Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& a
     : rooms_(new Rooms{{}, apparatus, choose_solver(bodies, apparatus, settings), {}, {}}) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         Aggregate& matter = *bodies[b];
-        if (settings.solver == Solver::quasistatic) {
+        if (!in_motion(settings.solver)) {
             // Equilibria have no speed; whatever an explicit stage left behind is gone.
             for (std::size_t p = 0; p < matter.particle_count(); ++p) {
                 matter.particle_velocity.set(p, Vec3::Zero());

@@ -115,7 +115,7 @@ class ContactWay {
   private:
     bool is_own() const { return from_ == onto_; }
     // Nothing has a speed.
-    bool is_static() const { return solver_ == Solver::quasistatic; }
+    bool is_static() const { return !in_motion(solver_); }
     bool is_near() const { return !stiffness_.empty(); }
     // How a point meets the cell that holds it, at the present positions. What has no vector lies
     // in the fourth lane of one.

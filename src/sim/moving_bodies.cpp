@@ -6,16 +6,10 @@
 
 namespace swage {
 
-namespace {
-
-bool meets(Solver solver) { return solver == Solver::explicit_steps || solver == Solver::euler; }
-
-}  // namespace
-
 MovingBodies::MovingBodies(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                            const SimSettings& settings)
     : state_(bodies.size()),
-      contact_(meets(settings.solver) ? bodies : std::vector<Aggregate*>{}, settings),
+      contact_(is_explicit(settings.solver) ? bodies : std::vector<Aggregate*>{}, settings),
       sleeping_(bodies, settings),
       asleep_since_(bodies.size()),
       stored_(bodies.size()),

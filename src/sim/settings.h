@@ -15,6 +15,18 @@ enum class Solver {
     implicit_steps,  // backward Euler
 };
 
+// Whether matter has speeds; else it rests at every frame.
+constexpr bool in_motion(Solver solver) { return solver != Solver::quasistatic; }
+// Whether it goes by explicit steps, of a length that the stiffest vibration allows.
+constexpr bool is_explicit(Solver solver) {
+    return solver == Solver::explicit_steps || solver == Solver::euler;
+}
+// Whether motion goes by all that materials and media say of it, as their damping; implicit steps
+// damp by themselves.
+constexpr bool follows_all_motion(Solver solver) {
+    return in_motion(solver) && solver != Solver::implicit_steps;
+}
+
 // As a scene names it.
 inline const char* name_of(Solver solver) {
     switch (solver) {
@@ -64,7 +76,7 @@ struct SimSettings {
     // With a tool that says Tool::contact_stiffness, or without.
     double stiffness_of_contacts(double tool_says = 0) const {
         if (contact_stiffness > 0) return contact_stiffness;
-        return tool_says > 0 && solver == Solver::quasistatic ? tool_says : 2;
+        return tool_says > 0 && !in_motion(solver) ? tool_says : 2;
     }
 };
 

@@ -12,8 +12,7 @@ double pressed_modulus(const Material& material, Solver solver) {
     const bool springs = material.mechanics == Mechanics::springs;
     const double nu = springs ? kPoissonOfSprings : material.poisson_ratio;
     const double bulk = material.young_modulus / (3 * (1 - 2 * nu));
-    return solver == Solver::quasistatic ? material.young_modulus
-                                         : std::max(material.young_modulus, bulk);
+    return in_motion(solver) ? std::max(material.young_modulus, bulk) : material.young_modulus;
 }
 
 std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints& points,

@@ -173,9 +173,8 @@ Vec3 ToolPairs::anchor(const Pair& pair) const { return pair.stuck ? pair.anchor
 Distance ToolPairs::distance(const Pair& pair, const Vec3& from, const Vec3& now,
                              ToolEntry& entry) const {
     entry = pair.entry;
-    const EntryReach reach{kBeside * spacing_, settings_.solver == Solver::quasistatic
-                                                   ? kDeepAtRest * spacing_
-                                                   : kAnywhere};
+    const EntryReach reach{kBeside * spacing_,
+                           in_motion(settings_.solver) ? kAnywhere : kDeepAtRest * spacing_};
     Distance d = distance_by_entry(tool(pair).shape, reach, from, now, entry);
     d.value += pair.deep;
     return d;
