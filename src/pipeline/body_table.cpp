@@ -10,6 +10,22 @@
 
 namespace swage {
 
+namespace {
+
+// Three, along x, y and z.
+struct MotionColumns {
+    const char *name, *unit;
+    Vec3 BodyMotion::*value;
+};
+constexpr MotionColumns kMotionColumns[] = {
+    {"", "m", &BodyMotion::centre},
+    {"velocity ", "m/s", &BodyMotion::velocity},
+    {"angular momentum ", "kg m2/s", &BodyMotion::angular_momentum},
+    {"spin ", "rad/s", &BodyMotion::spin},
+};
+
+}  // namespace
+
 BodyMotion motion_of(const Aggregate& matter) {
     BodyMotion motion{matter.centre(), matter.mean_velocity(), Vec3::Zero(), Vec3::Zero()};
     Mat3 inertia = Mat3::Zero();
@@ -42,27 +58,22 @@ void BodyTable::add(int frame, const std::vector<WorkPiece>& bodies, const Frame
 
 std::string BodyTable::csv_text() const {
     std::vector<std::string> cells = {"frame", "time [s]", "body"};
-    for (const auto& [quantity, unit] :
-         {std::pair("", "m"), std::pair("velocity ", "m/s"),
-          std::pair("angular momentum ", "kg m2/s"), std::pair("spin ", "rad/s")}) {
+    for (const MotionColumns& columns : kMotionColumns) {
         for (char axis : {'x', 'y', 'z'}) {
-            cells.push_back(fmt::format("{}{} [{}]", quantity, axis, unit));
+            cells.push_back(fmt::format("{}{} [{}]", columns.name, axis, columns.unit));
         }
     }
-    for (const EnergyColumn& column : kEnergyColumns) cells.emplace_back(column.name);
-    cells.emplace_back("passed to it [J]");
+    for (const BookEntry& entry : kBookEntries) cells.emplace_back(entry.column);
     std::string text = joined(cells, ",") + '\n';
     for (const Row& row : row_) {
         cells = {std::to_string(row.frame), csv_number(row.time), csv_text_cell(name_[row.body])};
-        const BodyMotion& motion = row.motion;
-        for (const Vec3& v :
-             {motion.centre, motion.velocity, motion.angular_momentum, motion.spin}) {
+        for (const MotionColumns& columns : kMotionColumns) {
+            const Vec3& v = row.motion.*columns.value;
             for (int d = 0; d < 3; ++d) cells.push_back(csv_number(v[d]));
         }
-        for (const EnergyColumn& column : kEnergyColumns) {
-            cells.push_back(csv_number(row.books.*column.value));
+        for (const BookEntry& entry : kBookEntries) {
+            cells.push_back(csv_number(row.books.*entry.value));
         }
-        cells.push_back(csv_number(row.books.passed));
         text += joined(cells, ",") + '\n';
     }
     return text;

@@ -32,6 +32,72 @@ void begin_row(LoadCurve& load, const Pose& pose) {
     load.contacts.push_back(0);
 }
 
+// Of each load.
+struct LoadColumn {
+    const char* name;
+    double (*value)(const LoadCurve& load, std::size_t row);
+    bool is_of_axis = false;  // only of what turns about one
+};
+template <int axis>
+double place(const LoadCurve& load, std::size_t row) {
+    return load.pose[row].translation[axis];
+}
+template <std::vector<Vec3> LoadCurve::*felt, int axis>
+double part(const LoadCurve& load, std::size_t row) {
+    return (load.*felt)[row][axis];
+}
+template <auto entry>
+double value(const LoadCurve& load, std::size_t row) {
+    return (load.*entry)[row];
+}
+constexpr LoadColumn kLoadColumns[] = {
+    {"x [m]", place<0>},
+    {"y [m]", place<1>},
+    {"z [m]", place<2>},
+    {"turn [rad]", value<&LoadCurve::turn>},
+    {"travel [m]", value<&LoadCurve::travel>},
+    {"force x [N]", part<&LoadCurve::force, 0>},
+    {"force y [N]", part<&LoadCurve::force, 1>},
+    {"force z [N]", part<&LoadCurve::force, 2>},
+    {"torque x [N m]", part<&LoadCurve::torque, 0>},
+    {"torque y [N m]", part<&LoadCurve::torque, 1>},
+    {"torque z [N m]", part<&LoadCurve::torque, 2>},
+    {"torque about its axis [N m]", value<&LoadCurve::axial_torque>, true},
+    {"work [J]", value<&LoadCurve::work>},
+    {"penetration [m]", value<&LoadCurve::penetration>},
+    {"contacts", value<&LoadCurve::contacts>},
+};
+template <typename Act>
+void for_columns(const LoadCurve& load, const Act& act) {
+    for (const LoadColumn& column : kLoadColumns) {
+        if (load.axis || !column.is_of_axis) act(column);
+    }
+}
+
+// Of all bodies together, which pass nothing to each other in sum.
+template <typename Act>
+void for_sums(const Act& act) {
+    for (const BookEntry& entry : kBookEntries) {
+        if (entry.side != BookSide::passed) act(entry);
+    }
+}
+
+// Of each frame.
+struct CountColumn {
+    const char* name;
+    long (*value)(const FrameReport& report);
+};
+constexpr CountColumn kCountColumns[] = {
+    {"severed connections", [](const FrameReport& report) -> long { return report.severed; }},
+    {"broken connections", [](const FrameReport& report) -> long { return report.broken; }},
+    {"pieces", [](const FrameReport& report) -> long { return report.pieces; }},
+    {"iterations", [](const FrameReport& report) { return report.iterations; }},
+    {"increments", [](const FrameReport& report) { return report.increments; }},
+    {"halvings", [](const FrameReport& report) { return report.halvings; }},
+    {"steps", [](const FrameReport& report) { return report.steps; }},
+    {"steps taken back", [](const FrameReport& report) { return report.rejected; }},
+};
+
 }  // namespace
 
 StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
@@ -98,55 +164,39 @@ void StageCurves::add(int frame, const FrameReport& report, const std::vector<Pr
 }
 
 std::string csv_text(const StageCurves& curves) {
-    std::string text = "frame,time [s]";
+    std::vector<std::string> names = {"frame", "time [s]"};
     for (const LoadCurve& load : curves.load()) {
-        for (const char* column :
-             {"x [m]", "y [m]", "z [m]", "turn [rad]", "travel [m]", "force x [N]", "force y [N]",
-              "force z [N]", "torque x [N m]", "torque y [N m]", "torque z [N m]",
-              "torque about its axis [N m]", "work [J]", "penetration [m]", "contacts"}) {
-            if (!load.axis && std::string_view(column).starts_with("torque about")) continue;
-            text += ',';
-            text += csv_text_cell(load.name + " " + column);
-        }
+        for_columns(load, [&](const LoadColumn& column) {
+            names.push_back(csv_text_cell(load.name + " " + column.name));
+        });
     }
     for (const ProbePlace& probe : curves.probes().front()) {
-        for (const char* column : {"x [m]", "y [m]", "z [m]"}) {
-            text += ',' + csv_text_cell(probe.name + " " + column);
+        for (const char* axis : {"x [m]", "y [m]", "z [m]"}) {
+            names.push_back(csv_text_cell(probe.name + " " + axis));
         }
     }
-    for (const EnergyColumn& column : kEnergyColumns) text += std::string(",") + column.name;
-    text +=
-        ",severed connections,broken connections,pieces,iterations,increments,halvings,steps,"
-        "steps taken back,residual\n";
+    for_sums([&](const BookEntry& entry) { names.emplace_back(entry.column); });
+    for (const CountColumn& column : kCountColumns) names.emplace_back(column.name);
+    names.emplace_back("residual");
+    std::string text = joined(names, ",") + '\n';
     for (std::size_t row = 0; row < curves.rows(); ++row) {
         const FrameReport& report = curves.report()[row];
         std::vector<std::string> cells = {std::to_string(curves.frame()[row]),
                                           csv_number(report.time)};
         for (const LoadCurve& load : curves.load()) {
-            for (int c = 0; c < 3; ++c) cells.push_back(csv_number(load.pose[row].translation[c]));
-            cells.push_back(csv_number(load.turn[row]));
-            cells.push_back(csv_number(load.travel[row]));
-            for (int c = 0; c < 3; ++c) cells.push_back(csv_number(load.force[row][c]));
-            for (int c = 0; c < 3; ++c) cells.push_back(csv_number(load.torque[row][c]));
-            if (load.axis) cells.push_back(csv_number(load.axial_torque[row]));
-            cells.push_back(csv_number(load.work[row]));
-            cells.push_back(csv_number(load.penetration[row]));
-            cells.push_back(std::to_string(load.contacts[row]));
+            for_columns(load, [&](const LoadColumn& column) {
+                cells.push_back(csv_number(column.value(load, row)));
+            });
         }
         for (const ProbePlace& probe : curves.probes()[row]) {
             for (int c = 0; c < 3; ++c) cells.push_back(csv_number(probe.place[c]));
         }
-        for (const EnergyColumn& column : kEnergyColumns) {
-            cells.push_back(csv_number(report.*column.value));
-        }
-        for (long count :
-             {long(report.severed), long(report.broken), long(report.pieces), report.iterations,
-              report.increments, report.halvings, report.steps, report.rejected}) {
-            cells.push_back(std::to_string(count));
+        for_sums([&](const BookEntry& entry) { cells.push_back(csv_number(report.*entry.value)); });
+        for (const CountColumn& column : kCountColumns) {
+            cells.push_back(std::to_string(column.value(report)));
         }
         cells.push_back(csv_number(report.residual));
-        text += joined(cells, ",");
-        text += '\n';
+        text += joined(cells, ",") + '\n';
     }
     return text;
 }

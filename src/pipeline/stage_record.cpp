@@ -28,25 +28,18 @@ Json peaks_json(const StageCurves& curves) {
     return json;
 }
 
-Json energies_json(const Books& last) {
-    return {{"machine_work", last.work},
-            {"load_work", last.load_work},
-            {"gravity_work", last.gravity_work},
-            {"kinetic", last.kinetic},
-            {"kinetic_at_start", last.kinetic_at_start},
-            {"elastic", last.elastic},
-            {"elastic_at_start", last.elastic_at_start},
-            {"contact", last.contact},
-            {"contact_at_start", last.contact_at_start},
-            {"passed", last.passed},
-            {"plastic", last.plastic},
-            {"damped", last.damped},
-            {"friction", last.friction},
-            {"drag", last.drag},
-            {"severed", last.severed_energy},
-            {"fracture", last.fracture},
-            {"set_free", last.set_free},
-            {"remainder", last.remainder}};
+Json energies_json(const Books& books) {
+    Json json = Json::object();
+    for (const BookSide side :
+         {BookSide::given, BookSide::held, BookSide::passed, BookSide::taken, BookSide::left}) {
+        for (const BookEntry& entry : kBookEntries) {
+            if (entry.side != side) continue;
+            json[entry.key] = books.*entry.value;
+            if (entry.at_start == nullptr) continue;
+            json[std::string(entry.key) + "_at_start"] = books.*entry.at_start;
+        }
+    }
+    return json;
 }
 
 }  // namespace

@@ -67,28 +67,6 @@ struct WorkedBody {
 
 }  // namespace
 
-void Books::add(const Books& other) {
-    kinetic += other.kinetic;
-    kinetic_at_start += other.kinetic_at_start;
-    elastic += other.elastic;
-    elastic_at_start += other.elastic_at_start;
-    work += other.work;
-    load_work += other.load_work;
-    gravity_work += other.gravity_work;
-    contact += other.contact;
-    contact_at_start += other.contact_at_start;
-    among_at_start += other.among_at_start;
-    passed += other.passed;
-    plastic += other.plastic;
-    friction += other.friction;
-    drag += other.drag;
-    damped += other.damped;
-    severed_energy += other.severed_energy;
-    fracture += other.fracture;
-    set_free += other.set_free;
-    remainder += other.remainder;
-}
-
 struct Simulation::Rooms {
     std::vector<WorkedBody> body;
     const Apparatus& apparatus;
@@ -228,12 +206,7 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
             books.among_at_start = part.by_contact.stored_at_start;
             body[b].begun = true;
         }
-        const double stored_at_start =
-            books.kinetic_at_start + books.elastic_at_start + books.contact_at_start;
-        books.remainder = books.work + books.load_work + books.gravity_work + books.passed -
-                          (part.after.sum() - stored_at_start) - books.plastic - books.damped -
-                          books.friction - books.drag - books.severed_energy - books.fracture -
-                          books.set_free;
+        books.remainder = books.left_over();
         report.body.push_back(books);
         report.add(books);
     }

@@ -10,6 +10,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/books.h"
 #include "sim/settings.h"
 #include "sim/step_counts.h"
 
@@ -35,32 +36,6 @@ struct ToolLoad {
     double penetration = 0;      // of the deepest point [m], at the end of any leg of the frame
     int contacts = 0;
     bool touched = false;  // there were some in this frame
-};
-
-// The energy books of one body, or of all.
-struct Books {
-    using IsPlain = Books;
-
-    // Now, and when the stage began [J]; elastic energy that a blade took at once was in it too.
-    double kinetic = 0, kinetic_at_start = 0;
-    double elastic = 0, elastic_at_start = 0;
-    double contact = 0, contact_at_start = 0;  // in contacts and grips
-    double among_at_start = 0;  // of that, in contacts with other bodies and itself [J]
-    double work = 0, load_work = 0, gravity_work = 0;  // done on it since the stage began [J], by
-                                                       // tools and grips, loads, gravity
-    double passed = 0;  // to it by bodies that it touches, likewise; nothing in the sum of all
-    double plastic = 0, damped = 0;  // taken since the stage began [J]
-    double friction = 0, drag = 0;   // likewise; drag of the medium
-    double severed_energy = 0;       // elastic energy lost with severed connections, likewise [J]
-    double fracture = 0;             // energy that breaking took, likewise [J]
-    // While the drive stood, likewise [J]: what an equilibrium has less than the one before when
-    // cracks have run on, a blade has cut or what held it is gone. Quasi-static only.
-    double set_free = 0;
-    // Of all work since the stage began, what none of the others accounts for [J]: in motion the
-    // error of the steps; else what relaxation lets go where something snaps or is put on at once.
-    double remainder = 0;
-
-    void add(const Books& other);
 };
 
 struct FrameReport : Books, StepCounts {  // of all bodies
