@@ -11,12 +11,12 @@
 
 #include "app/command.h"
 #include "app/help_format.h"
-#include "app/suggest.h"
+#include "app/parse_error.h"
 #include "base/failure.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "pipeline/interrupt.h"
 #include "pipeline/run_directory.h"
+#include "pipeline/signals.h"
 
 namespace swage {
 

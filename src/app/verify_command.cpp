@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/suggest.h"
-#include "pipeline/interrupt.h"
 #include "pipeline/run_directory.h"
+#include "pipeline/signals.h"
 #include "verify/table.h"
 
 namespace swage {

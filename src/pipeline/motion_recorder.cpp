@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/motion_recorder.h"
 
-#include "pipeline/interrupt.h"
+#include "pipeline/signals.h"
 
 namespace swage {
 

@@ -23,7 +23,7 @@ class MotionRecorder {
     MotionRecorder(const std::filesystem::path& file, const std::filesystem::path& from,
                    const MotionMark& mark, const std::vector<WorkPiece>& bodies,
                    const std::vector<int>& skins, bool stays = false);
-    // From its first frame on and as long as it lives, frames are at stake (pipeline/interrupt.h).
+    // From its first frame on and as long as it lives, frames are at stake (pipeline/signals.h).
     ~MotionRecorder();
 
     void set_machine(const Apparatus& apparatus);

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "pipeline/interrupt.h"
+#include "pipeline/signals.h"
 #include "pipeline/surface_match.h"
 
 namespace swage {

@@ -8,7 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "pipeline/interrupt.h"
+#include "pipeline/signals.h"
 
 namespace swage {
 

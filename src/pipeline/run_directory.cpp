@@ -10,8 +10,8 @@
 #include "base/text.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/folder_lock.h"
-#include "pipeline/interrupt.h"
 #include "pipeline/run_record.h"
+#include "pipeline/signals.h"
 
 namespace swage {
 

@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "base/file_contents.h"
+#include "render/image_read.h"
 #include "render/letters.h"
-#include "render/png.h"
 
 namespace {
 

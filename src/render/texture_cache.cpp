@@ -7,7 +7,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "render/contact_sheet.h"
-#include "render/png.h"
+#include "render/image_read.h"
 
 namespace swage {
 

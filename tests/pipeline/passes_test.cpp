@@ -8,7 +8,7 @@
 #include "pipeline/draw.h"
 #include "pipeline/json.h"
 #include "pipeline/render_directory.h"
-#include "render/png.h"
+#include "render/image_read.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 #include "tests/render/drawn.h"

@@ -8,7 +8,7 @@
 #include "geometry/box_mesh.h"
 #include "pipeline/draw.h"
 #include "pipeline/usd_export.h"
-#include "render/png.h"
+#include "render/image_read.h"
 #include "render/studio.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"

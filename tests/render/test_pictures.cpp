@@ -9,6 +9,7 @@
 #include "base/srgb.h"
 #include "render/contact_sheet.h"
 #include "render/film.h"
+#include "render/image_read.h"
 #include "render/png.h"
 #include "tests/catch.h"
 #include "tests/shared/bytes_of.h"

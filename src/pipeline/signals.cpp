@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/interrupt.h"
+#include "pipeline/signals.h"
 
 #include <fcntl.h>
 #include <poll.h>

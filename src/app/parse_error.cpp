@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/suggest.h"
+#include "app/parse_error.h"
 
 #include <fmt/format.h>
 
