@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/ascii.h"
 #include "base/error.h"
 
 namespace swage {
@@ -32,7 +32,7 @@ bool is_temporary(const std::string& name, long pid) {
     const std::size_t part = name.rfind(".part");
     if (name.empty() || name[0] != '.' || part == std::string::npos) return false;
     std::size_t end = part + 5;
-    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+    while (end < name.size() && is_digit(name[end])) ++end;
     const std::string digits = name.substr(part + 5, end - part - 5);
     if (digits.empty() || (end < name.size() && name[end] != '.')) return false;
     if (pid != 0) return digits == std::to_string(pid);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "base/ascii.h"
 #include "base/math.h"
 #include "base/portable_math.h"
 #include "base/suggest.h"
@@ -124,11 +125,6 @@ mu::Parser make_parser() {
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-bool begins_word(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-           static_cast<unsigned char>(c) >= 0x80;
-}
-bool goes_on_word(char c) { return begins_word(c) || (c >= '0' && c <= '9'); }
 
 // Reads a formula from left to right and writes it again for muparser, with units worked in.
 class Reader {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/ascii.h"
 #include "base/math.h"
 #include "base/suggest.h"
 #include "base/text.h"
@@ -149,11 +150,6 @@ const QuantityName& about(Quantity quantity) {
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_word_letter(char c) {
-    return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-           static_cast<unsigned char>(c) >= 0x80;
-}
 
 // Bytes of `text` that spell `unit`, where the text may write m2 as m^2 or with a raised digit.
 std::size_t spelled(std::string_view text, std::string_view unit) {
@@ -245,7 +241,7 @@ std::optional<LeadingNumber> leading_number(std::string_view text) {
     if (!begins) {
         // from_chars would also read these words; a unit or variable may begin with them.
         const std::size_t end = static_cast<std::size_t>(
-            std::find_if_not(digits.begin(), digits.end(), is_word_letter) - digits.begin());
+            std::find_if_not(digits.begin(), digits.end(), goes_on_word) - digits.begin());
         const std::string_view word = digits.substr(0, end);
         if (edit_distance(word, "nan") == 0 || edit_distance(word, "inf") == 0 ||
             edit_distance(word, "infinity") == 0) {
@@ -277,7 +273,7 @@ std::optional<LeadingUnit> leading_unit(std::string_view text) {
     for (const Unit& unit : kUnits) {
         const std::size_t size = spelled(text, unit.name);
         if (size == 0 || (best && size <= best->size)) continue;
-        if (size < text.size() && is_word_letter(text[size]) && unit.name[0] != '%') continue;
+        if (size < text.size() && goes_on_word(text[size]) && unit.name[0] != '%') continue;
         best = LeadingUnit{unit.quantity, unit.factor, size};
     }
     return best;

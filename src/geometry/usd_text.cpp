@@ -3,22 +3,16 @@
 
 #include <fmt/compile.h>
 
+#include "base/ascii.h"
 #include "base/text.h"
 
 namespace swage {
-
-namespace {
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-}  // namespace
 
 std::string usd_identifier(std::string_view name, std::set<std::string>& taken) {
     std::string plain;
     for (const char c : name) {
         const bool goes_on = (static_cast<unsigned char>(c) & 0xc0) == 0x80;  // a letter of UTF-8
-        if (!goes_on) plain.push_back(is_letter(c) || is_digit(c) ? c : '_');
+        if (!goes_on) plain.push_back(goes_on_name(c) ? c : '_');
     }
     if (plain.empty() || is_digit(plain[0])) plain.insert(0, 1, '_');
     std::string unique = plain;

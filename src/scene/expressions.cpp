@@ -2,8 +2,9 @@
 #include "scene/expressions.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+
+#include "base/ascii.h"
 
 namespace swage {
 
@@ -59,9 +60,7 @@ namespace {
 
 std::string word_at(const std::string& text, std::size_t at) {
     const auto begin = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
-    return {begin, std::find_if_not(begin, text.end(), [](unsigned char c) {
-                return std::isalnum(c) != 0 || c == '_';
-            })};
+    return {begin, std::find_if_not(begin, text.end(), goes_on_name)};
 }
 
 }  // namespace

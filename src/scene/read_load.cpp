@@ -3,15 +3,13 @@
 
 #include <algorithm>
 
+#include "base/ascii.h"
+
 namespace swage {
 
 bool is_part_name(const std::string& text) {
-    const auto letter = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    };
-    return !text.empty() && letter(text[0]) && text.size() <= 64 &&
-           std::all_of(text.begin(), text.end(),
-                       [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+    return !text.empty() && begins_name(text[0]) && text.size() <= 64 &&
+           std::all_of(text.begin(), text.end(), goes_on_name);
 }
 
 std::string read_part_name(TableReader& table, std::set<std::string>& names) {

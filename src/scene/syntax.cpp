@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/ascii.h"
 #include "base/suggest.h"
 #include "base/units.h"
 
@@ -18,10 +19,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-bool is_key_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.';
-}
+bool is_key_letter(char c) { return goes_on_name(c) || c == '-' || c == '.'; }
 
 struct KeyLine {  // KEY = VALUE
     std::string key;
@@ -104,14 +102,14 @@ std::string value_advice(const KeyLine& line) {
     const std::string& value = line.value;
     if (value.empty()) return fmt::format("{} has no value", line.key);
     const char first = value[0];
-    if ((first >= '0' && first <= '9') || first == '.' || first == '-' || first == '+') {
+    if (is_digit(first) || first == '.' || first == '-' || first == '+') {
         return number_advice(line);
     }
     if (first == '"' || first == '\'') {
         const bool is_open = value.find(first, 1) == std::string::npos;
         return is_open ? "the closing quote is missing" : "";
     }
-    if ((first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z')) {
+    if (is_letter(first)) {
         for (const char* word : {"true", "yes", "on"}) {
             if (edit_distance(value, word) == 0) return "write true";
         }
