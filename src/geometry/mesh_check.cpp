@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -173,29 +174,37 @@ MeshReport check_mesh(const TriMesh& mesh) {
     return report;
 }
 
-std::string length_text(double metres) {
-    const double size = std::abs(metres);
-    if (size >= 1e4) return fmt::format("{:.4g} km", metres / 1e3);
-    if (size >= 1 || size == 0) return fmt::format("{:.4g} m", metres);
-    if (size >= 1e-2) return fmt::format("{:.4g} cm", metres * 1e2);
-    if (size >= 1e-3) return fmt::format("{:.4g} mm", metres * 1e3);
-    return fmt::format("{:.4g} um", metres * 1e6);
+namespace {
+
+struct ShownUnit {
+    double from;  // such sizes on
+    const char* name;
+    double factor;
+};
+constexpr ShownUnit kLengths[] = {
+    {1e4, "km", 1e-3}, {1, "m", 1}, {1e-2, "cm", 1e2}, {1e-3, "mm", 1e3}, {0, "um", 1e6}};
+constexpr ShownUnit kAreas[] = {
+    {0.1, "m2", 1}, {1e-5, "cm2", 1e4}, {1e-9, "mm2", 1e6}, {0, "um2", 1e12}};
+constexpr ShownUnit kVolumes[] = {
+    {1e-3, "m3", 1}, {1e-8, "cm3", 1e6}, {1e-12, "mm3", 1e9}, {0, "um3", 1e18}};
+
+// Nought is in metres.
+const ShownUnit& unit_for(std::span<const ShownUnit> units, double value) {
+    return *std::find_if(units.begin(), units.end() - 1, [&](const ShownUnit& unit) {
+        return value == 0 ? unit.factor == 1 : std::abs(value) >= unit.from;
+    });
 }
 
-std::string volume_text(double cubic_metres) {
-    const double size = std::abs(cubic_metres);
-    if (size >= 1e-3 || size == 0) return fmt::format("{:.4g} m3", cubic_metres);
-    if (size >= 1e-8) return fmt::format("{:.4g} cm3", cubic_metres * 1e6);
-    if (size >= 1e-12) return fmt::format("{:.4g} mm3", cubic_metres * 1e9);
-    return fmt::format("{:.4g} um3", cubic_metres * 1e18);
+std::string text_in(std::span<const ShownUnit> units, double value) {
+    const ShownUnit& unit = unit_for(units, value);
+    return fmt::format("{:.4g} {}", unit.factor * value, unit.name);
 }
 
-std::string area_text(double square_metres) {
-    if (square_metres >= 0.1 || square_metres == 0) return fmt::format("{:.4g} m2", square_metres);
-    if (square_metres >= 1e-5) return fmt::format("{:.4g} cm2", square_metres * 1e4);
-    if (square_metres >= 1e-9) return fmt::format("{:.4g} mm2", square_metres * 1e6);
-    return fmt::format("{:.4g} um2", square_metres * 1e12);
-}
+}  // namespace
+
+std::string length_text(double metres) { return text_in(kLengths, metres); }
+std::string volume_text(double cubic_metres) { return text_in(kVolumes, cubic_metres); }
+std::string area_text(double square_metres) { return text_in(kAreas, square_metres); }
 
 std::string summary_line(const MeshReport& report) {
     std::string state = "closed";
@@ -211,13 +220,7 @@ std::string summary_line(const MeshReport& report) {
     }
     // All three sides in the unit that suits the longest.
     const Vec3 size = report.box.empty() ? Vec3(Vec3::Zero()) : report.box.size();
-    const std::string longest = length_text(size.maxCoeff());
-    const std::string unit = longest.substr(longest.find(' ') + 1);
-    const double scale = unit == "km"   ? 1e-3
-                         : unit == "cm" ? 1e2
-                         : unit == "mm" ? 1e3
-                         : unit == "um" ? 1e6
-                                        : 1.0;
+    const ShownUnit& unit = unit_for(kLengths, size.maxCoeff());
     std::string line = counted(report.vertices, "vertex", "vertices") + ", " +
                        counted(report.triangles, "triangle", "triangles");
     if (report.polygons != report.triangles)
@@ -226,8 +229,8 @@ std::string summary_line(const MeshReport& report) {
     if (report.materials > 0) line += ", " + counted(report.materials, "material", "materials");
     if (report.has_uv) line += ", texture coordinates";
     return line + fmt::format(", {}, volume {}, box {:.4g} x {:.4g} x {:.4g} {}", state,
-                              volume_text(report.volume), scale * size.x(), scale * size.y(),
-                              scale * size.z(), unit);
+                              volume_text(report.volume), unit.factor * size.x(),
+                              unit.factor * size.y(), unit.factor * size.z(), unit.name);
 }
 
 }  // namespace swage

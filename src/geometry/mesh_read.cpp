@@ -49,19 +49,13 @@ constexpr bool kSanitized = true;
 constexpr bool kSanitized = false;
 #endif
 
-bool format_of(const fs::path& file, MeshFormat& format) {
+std::optional<MeshFormat> format_of(const fs::path& file) {
     std::string ending = file.extension().string();
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    static const std::pair<const char*, MeshFormat> kFormats[] = {
-        {".obj", MeshFormat::obj}, {".ply", MeshFormat::ply},   {".stl", MeshFormat::stl},
-        {".off", MeshFormat::off}, {".gltf", MeshFormat::gltf}, {".glb", MeshFormat::glb},
-        {".dae", MeshFormat::dae}, {".3ds", MeshFormat::tds},   {".3mf", MeshFormat::tmf}};
-    for (const auto& [name, value] : kFormats)
-        if (ending == name) {
-            format = value;
-            return true;
-        }
-    return false;
+    for (std::size_t n = 0; n < std::size(kMeshEnding); ++n) {
+        if (ending == std::string(".") + kMeshEnding[n]) return static_cast<MeshFormat>(n);
+    }
+    return std::nullopt;
 }
 
 const char* kind_of(mode_t mode) {
@@ -180,10 +174,12 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
     if (name.find('\0') != std::string::npos || file.empty())
         fail(ExitCode::mesh, "a mesh file needs a name");
     const FileHandle opened = open_checked(file, limits);
-    MeshSource source;
-    if (!format_of(file, source.format))
+    const std::optional<MeshFormat> format = format_of(file);
+    if (!format)
         fail(ExitCode::mesh, "{}: '{}' is not a mesh format that can be read ({})", name,
              file.extension().string(), kMeshKinds);
+    MeshSource source;
+    source.format = *format;
     source.file = fs::absolute(file).lexically_normal();
     source.file_bytes = limits.file_bytes;
     source.memory_bytes = limits.memory_bytes;
@@ -249,15 +245,9 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
 
 }  // namespace
 
-bool is_mesh_file_name(const fs::path& file) {
-    MeshFormat ignored;
-    return format_of(file, ignored);
-}
+bool is_mesh_file_name(const fs::path& file) { return format_of(file).has_value(); }
 
-bool keeps_numbers_beside(const fs::path& file) {
-    MeshFormat format;
-    return format_of(file, format) && format == MeshFormat::gltf;
-}
+bool keeps_numbers_beside(const fs::path& file) { return format_of(file) == MeshFormat::gltf; }
 
 bool goes_by_crease_angle(const fs::path& file) {
     TriMesh smooth;

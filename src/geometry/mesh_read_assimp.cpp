@@ -96,30 +96,6 @@ class Listener : public Assimp::LogStream {
     std::string& dropped_;
 };
 
-const char* extension_of(MeshFormat format) {
-    switch (format) {
-        case MeshFormat::obj:
-            return "obj";
-        case MeshFormat::ply:
-            return "ply";
-        case MeshFormat::stl:
-            return "stl";
-        case MeshFormat::off:
-            return "off";
-        case MeshFormat::gltf:
-            return "gltf";
-        case MeshFormat::glb:
-            return "glb";
-        case MeshFormat::dae:
-            return "dae";
-        case MeshFormat::tds:
-            return "3ds";
-        case MeshFormat::tmf:
-            return "3mf";
-    }
-    return "";
-}
-
 // Takes out every reader but those for the extension: a file never reaches another format's.
 void keep_only(Assimp::Importer& importer, const std::string& extension) {
     for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
@@ -428,7 +404,7 @@ RawMesh read_by_assimp(MeshSource& source) {
     if (source.format == MeshFormat::stl) patch_stl(source);
     if (source.format == MeshFormat::gltf || source.format == MeshFormat::glb) patch_gltf(source);
     const double unit = source.format == MeshFormat::tmf ? patch_3mf(source) : 1;
-    const std::string extension = extension_of(source.format);
+    const std::string extension = kMeshEnding[std::size_t(source.format)];
     std::string dropped;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
     Assimp::DefaultLogger::get()->attachStream(new Listener(dropped),

@@ -16,6 +16,10 @@ namespace swage {
 
 enum class MeshFormat { obj, ply, stl, off, gltf, glb, dae, tds, tmf };
 
+// By the endings of files, in order of MeshFormat.
+inline constexpr const char* kMeshEnding[] = {"obj", "ply", "stl", "off", "gltf",
+                                              "glb", "dae", "3ds", "3mf"};
+
 struct MeshSource {
     std::filesystem::path file;  // absolute
     MeshFormat format;

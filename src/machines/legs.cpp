@@ -11,7 +11,8 @@ namespace swage {
 
 namespace {
 
-constexpr int kHalvings = 6;             // of a frame
+constexpr int kHalvings = 6;  // of a frame
+static_assert(1 << kHalvings == kMostLegs);
 constexpr int kMostHalvings = 12;        // the same for loads that jump, in motion
 constexpr int kJumps = 4;                // legs of a frame that may stay bent: what jumps is one
 constexpr double kNoLeg = 1e-12;         // of the stage, by which its beginning may be rounded

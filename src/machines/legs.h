@@ -35,6 +35,9 @@ struct Legs {
 // `begin`: of the stage, where there is nothing before it.
 Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion, double begin = 0);
 
+// Of a frame as long as nothing jumps.
+inline constexpr int kMostLegs = 64;
+
 // At the start and at the end of each of `steps` parts of each leg, of a stage of `duration` [s].
 // The last of a leg that bends says how.
 std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& legs, int steps,

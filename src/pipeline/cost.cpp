@@ -283,8 +283,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const std::string steps = step_note(scene, matter);
     if (!steps.empty()) cost.note.push_back(steps);
     const StageSpec& first = scene.stage.front();
-    std::vector<Material> beside;
-    for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
+    const std::vector<Material> beside = materials_beside(bodies);
     const Box skin = bodies.front().skin;
     const Machine machine = stage_machine(first, matter[0], beside, scene.duration_of(first), skin);
     cost.place = machine_places(scene, machine, matter[0], beside, skin);

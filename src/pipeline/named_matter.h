@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies of matter as warnings name them, the work-piece first.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "geometry/box.h"
 #include "matter/aggregate.h"
@@ -13,5 +15,12 @@ struct NamedMatter {
     const Aggregate* matter;
     Box skin{};  // of its skin, as place_work_frame() has it
 };
+
+// Of all but the work-piece.
+inline std::vector<Material> materials_beside(const std::vector<NamedMatter>& bodies) {
+    std::vector<Material> beside;
+    for (std::size_t b = 1; b < bodies.size(); ++b) beside.push_back(bodies[b].matter->material);
+    return beside;
+}
 
 }  // namespace swage

@@ -95,7 +95,7 @@ class StageRun {
           context_(context),
           connections_before_(connection_count(bodies)),
           volumes_before_(body_volumes(bodies)),
-          machine_(stage_machine(stage, bodies.front().matter, materials_beside(bodies),
+          machine_(stage_machine(stage, bodies.front().matter, materials_beside(named(bodies)),
                                  context.scene.duration_of(stage),
                                  box_of(bodies.front().position))),
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
@@ -171,11 +171,6 @@ class StageRun {
     }
 
   private:
-    static std::vector<Material> materials_beside(const std::vector<WorkPiece>& bodies) {
-        std::vector<Material> beside;
-        for (std::size_t b = 1; b < bodies.size(); ++b) beside.push_back(bodies[b].matter.material);
-        return beside;
-    }
     std::vector<ProbePlace> probes() const { return probe_places(context_.scene.body, bodies_); }
     bool each_frame() const { return context_.scene.output.meshes_per_frame; }
     const std::vector<SkinField>& fields() const { return context_.scene.output.fields; }
@@ -379,9 +374,9 @@ class StageRun {
         }
         if (way_.lost() > 0) {
             outcome_.warning.push_back(
-                fmt::format("{}: in {} of its frames the machine's motion is more than 64 steps "
+                fmt::format("{}: in {} of its frames the machine's motion is more than {} steps "
                             "can follow; use more frames",
-                            stage_.name, way_.lost()));
+                            stage_.name, way_.lost(), kMostLegs));
         }
         std::move(verdict.warning.begin(), verdict.warning.end(),
                   std::back_inserter(outcome_.warning));
