@@ -3,8 +3,8 @@
 // readers ask for.
 #pragma once
 
+#include <span>
 #include <string_view>
-#include <vector>
 
 namespace swage {
 
@@ -16,7 +16,7 @@ struct KeyHelp {
     std::string_view takes = {}, usual = {};
 };
 
-const std::vector<KeyHelp>& scene_key_help();
-const std::vector<KeyHelp>& machine_key_help();
+std::span<const KeyHelp> scene_key_help();
+std::span<const KeyHelp> machine_key_help();
 
 }  // namespace swage

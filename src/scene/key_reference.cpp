@@ -35,7 +35,7 @@ const std::map<std::string, std::string> kLike = {
     {"[[render.camera.keys]]", "[render.camera]"},
 };
 
-const KeyHelp* help_of(const std::vector<KeyHelp>& all, std::string_view section,
+const KeyHelp* help_of(std::span<const KeyHelp> all, std::string_view section,
                        std::string_view key) {
     const auto at = std::find_if(all.begin(), all.end(), [&](const KeyHelp& one) {
         return one.section == section && one.key == key;
@@ -53,7 +53,7 @@ KeyReference told(const KeyForm& form, const KeyHelp* help) {
     return key;
 }
 
-std::vector<SectionReference> reference(const Reading& reading, const std::vector<KeyHelp>& all) {
+std::vector<SectionReference> reference(const Reading& reading, std::span<const KeyHelp> all) {
     std::vector<SectionReference> result;
     for (const auto& [section, forms] : reading.forms) {
         std::string shown = section;

@@ -11,7 +11,7 @@ using namespace swage;
 namespace {
 
 void check_reference(const std::vector<SectionReference>& reference,
-                     const std::vector<KeyHelp>& help) {
+                     std::span<const KeyHelp> help) {
     std::size_t keys = 0;
     for (const SectionReference& section : reference) {
         for (const KeyReference& key : section.key) {
