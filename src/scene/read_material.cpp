@@ -112,6 +112,67 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
     if (!has_density) table.missing("density", "such as \"1200 kg/m3\"");
 }
 
+namespace {
+
+const MaterialCatalogue& catalogue(Reading& reading, const AssetPaths& assets,
+                                   const std::filesystem::path& scene_folder,
+                                   std::vector<std::filesystem::path>& inputs) {
+    if (!reading.materials) {
+        MaterialCatalogue found = material_catalogue(assets, scene_folder);
+        inputs.insert(inputs.end(), found.files.begin(), found.files.end());
+        reading.mistakes.add(std::move(found.mistakes));
+        reading.materials = std::make_shared<const MaterialCatalogue>(std::move(found));
+    }
+    return *reading.materials;
+}
+
+void take_known(TableReader& table, const std::string& name, const MaterialCatalogue& known,
+                const AssetPaths& assets, Material& material,
+                std::optional<SurfaceMaterial>& look) {
+    std::vector<std::string> names;
+    for (std::size_t n = 0; n < known.material.size(); ++n) {
+        if (known.material[n].name == name) {
+            material = known.material[n];
+            look = known.look[n];
+            return;
+        }
+        names.push_back(known.material[n].name);
+    }
+    const std::string hint = did_you_mean(name, names);
+    const std::string all = names.empty()
+                                ? "; found no materials file" + wrong_root_text(assets.root)
+                            : hint.empty() ? "; known: " + joined(names, ", ")
+                                           : " Known: " + joined(names, ", ");
+    table.mistake("name", fmt::format("there is no material \"{}\"{}{}", name, hint, all));
+}
+
+// A rubber or foam that is told to yield is taken as what can.
+void refuse_flow_of_rubber(TableReader& table, Material& material) {
+    if (material.elasticity == Elasticity::hencky || !std::isfinite(material.yield_stress)) return;
+    const std::string name = name_in(kElasticityNames, material.elasticity);
+    material.elasticity = Elasticity::hencky;
+    if (table.find("elasticity") != nullptr) {
+        table.mistake("elasticity",
+                      name +
+                          " matter does not yield: leave out yield_stress (or give inf) and "
+                          "flow_curve, or use elasticity = \"hencky\"");
+    }
+}
+
+void warn_of_strange_yield(TableReader& table, const Material& material) {
+    const double share = material.yield_stress / material.young_modulus;
+    if (std::isinf(share) || (share > kLeastYield && share < kMostYield)) return;
+    for (const char* key : {"yield_stress", "flow_curve"}) {
+        if (table.find(key) == nullptr) continue;
+        table.warn(key, fmt::format("{} makes it flow at {}, {:.1e} of young_modulus: is a unit "
+                                    "missing or wrong? Materials yield at {:g} to {:g} of it",
+                                    key, quantity_text(material.yield_stress, Quantity::stress),
+                                    share, kLeastYield, kMostYield));
+    }
+}
+
+}  // namespace
+
 void read_material(TableReader& table, const AssetPaths& assets,
                    const std::filesystem::path& scene_folder, Material& material,
                    std::optional<SurfaceMaterial>& look,
@@ -121,31 +182,8 @@ void read_material(TableReader& table, const AssetPaths& assets,
     const bool is_named = table.text("name", name);
     bool is_custom = !is_named;
     if (!name.empty()) {
-        Reading& reading = table.reading();
-        if (!reading.materials) {
-            MaterialCatalogue found = material_catalogue(assets, scene_folder);
-            inputs.insert(inputs.end(), found.files.begin(), found.files.end());
-            reading.mistakes.add(std::move(found.mistakes));
-            reading.materials = std::make_shared<const MaterialCatalogue>(std::move(found));
-        }
-        std::vector<std::string> known;
-        bool is_known = false;
-        for (std::size_t n = 0; n < reading.materials->material.size(); ++n) {
-            const Material& one = reading.materials->material[n];
-            known.push_back(one.name);
-            if (is_known || one.name != name) continue;
-            material = one;
-            look = reading.materials->look[n];
-            is_known = true;
-        }
-        if (!is_known) {
-            const std::string hint = did_you_mean(name, known);
-            const std::string all = known.empty()
-                                        ? "; found no materials file" + wrong_root_text(assets.root)
-                                    : hint.empty() ? "; known: " + joined(known, ", ")
-                                                   : " Known: " + joined(known, ", ");
-            table.mistake("name", fmt::format("there is no material \"{}\"{}{}", name, hint, all));
-        }
+        take_known(table, name, catalogue(table.reading(), assets, scene_folder, inputs), assets,
+                   material, look);
     } else if (is_named && node->kind == Node::Kind::text) {
         table.mistake("name", "the material's name is empty");
     } else if (table.place().line == 0) {
@@ -159,27 +197,8 @@ void read_material(TableReader& table, const AssetPaths& assets,
     table.choice<Mechanics>("mechanics", kMechanicsNames, material.mechanics);
     read_material_numbers(table, is_custom, material);
     read_look(table, look);
-    const bool asks_elasticity = table.find("elasticity") != nullptr;
-    if (material.elasticity != Elasticity::hencky && std::isfinite(material.yield_stress)) {
-        const std::string name = name_in(kElasticityNames, material.elasticity);
-        // A rubber or foam that is told to yield is taken as what can.
-        material.elasticity = Elasticity::hencky;
-        if (asks_elasticity) {
-            table.mistake("elasticity",
-                          name +
-                              " matter does not yield: leave out yield_stress (or give inf) and "
-                              "flow_curve, or use elasticity = \"hencky\"");
-        }
-    }
-    for (const char* key : {"yield_stress", "flow_curve"}) {
-        const double share = material.yield_stress / material.young_modulus;
-        if (table.find(key) == nullptr || std::isinf(share)) continue;
-        if (share > kLeastYield && share < kMostYield) continue;
-        table.warn(key, fmt::format("{} makes it flow at {}, {:.1e} of young_modulus: is a unit "
-                                    "missing or wrong? Materials yield at {:g} to {:g} of it",
-                                    key, quantity_text(material.yield_stress, Quantity::stress),
-                                    share, kLeastYield, kMostYield));
-    }
+    refuse_flow_of_rubber(table, material);
+    warn_of_strange_yield(table, material);
     table.finish();
 }
 

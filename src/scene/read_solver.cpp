@@ -61,44 +61,57 @@ void refuse_cut(TableReader& table, const SceneSpec& scene, const MachineSpec* m
                                         cut->name));
 }
 
-}  // namespace
+bool any_starts_moving(const SceneSpec& scene) {
+    return std::any_of(scene.body.begin(), scene.body.end(),
+                       [](const BodySpec& body) { return body.start.moves(); });
+}
 
-void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
-                 WorldAxis up, bool remolds, SimSettings& sim) {
+Solver chosen_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
+                     Solver usual) {
     const bool machine_moves = machine != nullptr && machine->moves;
-    const bool several = scene.body.size() > 1;
-    const bool starts = std::any_of(scene.body.begin(), scene.body.end(),
-                                    [](const BodySpec& body) { return body.start.moves(); });
-    if (several || starts || machine_moves) sim.solver = Solver::explicit_steps;
+    const bool moves = scene.body.size() > 1 || any_starts_moving(scene) || machine_moves;
+    Solver chosen = moves ? Solver::explicit_steps : usual;
     std::vector<std::pair<std::string, Solver>> solvers;
     for (const Solver solver : {Solver::quasistatic, Solver::explicit_steps, Solver::euler,
                                 Solver::energy_stepped, Solver::implicit_steps}) {
         solvers.emplace_back(name_of(solver), solver);
     }
-    table.choice<Solver>("solver", solvers, sim.solver);
-    if (!in_motion(sim.solver) && (several || starts)) {
+    table.choice<Solver>("solver", solvers, chosen);
+    return chosen;
+}
+
+// What a solver cannot do at all, or does not do as somebody may expect.
+void judge(TableReader& table, const SceneSpec& scene, const MachineSpec* machine, bool remolds,
+           Solver solver) {
+    const bool several = scene.body.size() > 1;
+    if (!in_motion(solver) && (several || any_starts_moving(scene))) {
         table.mistake("solver", fmt::format("solver = \"quasistatic\" computes equilibria and "
                                             "allows {}: leave it out, or use solver = \"explicit\"",
                                             several ? "only one body" : "no velocity and no spin"));
     }
-    for (const BodySpec& body : scene.body) refuse(table, body, sim.solver);
-    if (sim.solver == Solver::implicit_steps) refuse_cut(table, scene, machine, remolds);
-    if (sim.solver == Solver::implicit_steps && several) {
-        table.mistake("solver",
-                      "solver = \"implicit\" moves only one body: use solver = \"explicit\"");
+    for (const BodySpec& body : scene.body) refuse(table, body, solver);
+    if (solver == Solver::implicit_steps) {
+        refuse_cut(table, scene, machine, remolds);
+        if (several) {
+            table.mistake("solver",
+                          "solver = \"implicit\" moves only one body: use solver = \"explicit\"");
+        }
+        if (scene.work_piece().gives_damping) {
+            table.warn(
+                "solver",
+                "damping_ratio has no effect with solver = \"implicit\", whose steps damp by "
+                "themselves");
+        }
     }
-    if (sim.solver == Solver::implicit_steps && scene.work_piece().gives_damping) {
-        table.warn("solver",
-                   "damping_ratio has no effect with solver = \"implicit\", whose steps damp by "
-                   "themselves");
-    }
-    if (sim.solver == Solver::euler && machine != nullptr && !machine->grip.empty()) {
+    if (solver == Solver::euler && machine != nullptr && !machine->grip.empty()) {
         table.warn(
             "solver",
             "solver = \"euler\" gains energy wherever nothing damps, as where matter swings in a "
             "grip: a low grip_stiffness of 1 may keep it stable, else use solver = \"explicit\"");
     }
-    const bool is_implicit = sim.solver == Solver::implicit_steps;
+}
+
+void read_settings(TableReader& table, SimSettings& sim) {
     const auto number = [&](const std::string& key, double low, double high, double& into) {
         table.quantity(key, Quantity::number, between(low, high), into);
     };
@@ -118,31 +131,39 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     table.choice<DragAlong>("directional_drag_along",
                             {{"motion", DragAlong::motion}, {"normal", DragAlong::normal}},
                             sim.directional_drag_along);
-    if (is_implicit) {
+    if (sim.solver == Solver::implicit_steps) {
         sim.self_contact = false;
         sim.medium_density = sim.directional_drag = 0;
     }
-    const Node* gravity = table.find("gravity");
+}
+
+void read_gravity(TableReader& table, WorldAxis up, Vec3& gravity) {
+    const Node* given = table.find("gravity");
     if (up == WorldAxis::automatic) up = WorldAxis::y;
     const Vec3 above = direction_of(up);
-    if (gravity != nullptr && gravity->kind != Node::Kind::array) {
+    if (given != nullptr && given->kind != Node::Kind::array) {
         double down = 0;  // a single number points down
         table.quantity("gravity", Quantity::acceleration, {}, down);
-        sim.gravity = (-down * above).array() + 0.0;
+        gravity = (-down * above).array() + 0.0;
     } else {
-        table.vector("gravity", Quantity::acceleration, sim.gravity);
+        table.vector("gravity", Quantity::acceleration, gravity);
     }
-    if (sim.gravity != Vec3::Zero() && !(sim.gravity.dot(above) < 0)) {
+    if (gravity != Vec3::Zero() && !(gravity.dot(above) < 0)) {
         table.warn(
             "gravity",
             fmt::format("gravity does not point down: {} is up, and a single number points down",
                         name_of(up)));
     }
+}
+
+void warn_if_nothing_happens(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
+                             const Vec3& gravity) {
     const bool acts = machine == nullptr || !machine->stands() || !machine->load.empty() ||
-                      starts || sim.gravity != Vec3::Zero() || table.find("load") != nullptr;
+                      any_starts_moving(scene) || gravity != Vec3::Zero() ||
+                      table.find("load") != nullptr;
     // What the stages before have left may spring back, or swing, by itself.
     if (acts || !scene.stage.empty()) return;
-    if (machine_moves) {
+    if (machine->moves) {
         table.warn("machine",
                    "nothing moves: there is no gravity (gravity = \"9.81 m/s2\") and no load, and "
                    "no body starts with a velocity or spin");
@@ -157,6 +178,17 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
                    "nothing happens: there is no gravity (gravity = \"9.81 m/s2\") or load "
                    "([[stage.load]])");
     }
+}
+
+}  // namespace
+
+void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
+                 WorldAxis up, bool remolds, SimSettings& sim) {
+    sim.solver = chosen_solver(table, scene, machine, sim.solver);
+    judge(table, scene, machine, remolds, sim.solver);
+    read_settings(table, sim);
+    read_gravity(table, up, sim.gravity);
+    warn_if_nothing_happens(table, scene, machine, sim.gravity);
 }
 
 }  // namespace swage
