@@ -57,106 +57,164 @@ Plots plots_of(const SceneSpec& scene, const RunDirectory& directory) {
     return {directory.root() / "curves", names};
 }
 
-}  // namespace
+// One execution of a scene: what an earlier one in the same directory has not done yet is
+// simulated, plotted and drawn.
+class SceneRun {
+  public:
+    SceneRun(const SceneSpec& scene, const RunOptions& options)
+        : scene_(scene),
+          options_(options),
+          wanted_(wanted_frames(scene, options)),
+          input_(read_input()),
+          cost_(estimate_cost(scene, input_, options)),
+          identity_(identity_of(scene, input_, options)),
+          may_be_done_(!options.fresh && has_record()),
+          directory_(enter()),
+          files_{directory_.root(), scene.render.first_frame},
+          plots_(plots_of(scene, directory_)) {}
 
-Json run_scene(const SceneSpec& scene, const RunOptions& options) {
-    Stopwatch watch;
-    const FrameRange wanted = wanted_frames(scene, options);
-    std::vector<InputMesh> input;
-    {
-        const auto lap = watch.lap("read");
-        input = read_input_meshes(scene);
-    }
-    const RunCost cost = estimate_cost(scene, input, options);
-    const RunIdentity identity = identity_of(scene, input, options);
-    const auto refuse_early = [&] {
-        refuse_excess(cost, options);
-        if (options.draw) check_drawing(scene.render);
-    };
-    // Where nothing can have been done yet, nothing is made before it is known to be worth it.
-    std::error_code unknown;
-    const bool may_be_done =
-        !options.fresh && std::filesystem::exists(RunDirectory::record_in(options.out), unknown);
-    if (!may_be_done) refuse_early();
-    RunDirectory directory(options.out, identity, options.fresh, options.go_on);
-    const DrawnFiles files{directory.root(), scene.render.first_frame};
-
-    Json record;
-    const std::optional<Json> earlier =
-        may_be_done && !directory.is_changed() ? read_record(directory.record()) : std::nullopt;
-    const bool simulated = earlier && stands(*earlier, scene, directory);
-    // What may fail, and is no loss, comes after everything else of the simulation.
-    Plots plots = plots_of(scene, directory);
-    const auto draw_plots = [&] {
-        const auto lap = watch.lap("plot");
-        plots.draw();
-        record["plots"]["warnings"] = plots.warnings();
-        write_record(directory, record, watch);
+    Json run() {
+        is_simulated_ = take_up_earlier();
+        if (is_simulated_) {
+            forget_what_is_done(directory_, scene_);
+            if (plots_.has_undrawn()) draw_plots();
+            if (!options_.draw || is_drawn(record_, files_, wanted_, scene_.render)) {
+                return tell_that_it_is_done();
+            }
+        }
+        if (may_be_done_) refuse_early();
         throw_if_interrupted();
-    };
-    if (simulated) {
-        forget_what_is_done(directory, scene);
-        record = *earlier;
-        if (plots.has_undrawn()) draw_plots();
-        if (!options.draw || is_drawn(record, files, wanted, scene.render)) {
-            if (record.at("state") == RunState::complete) directory.remove_replaced();
-            log_info("{}: {}", directory.root().string(),
-                     record.at("state") == RunState::complete
-                         ? "already complete"
-                         : "already simulated; nothing is drawn because of --no-render");
-            return record;
-        }
+        const Ended ended = simulate_unless_done();
+        if (ended.interrupted) leave(*ended.interrupted);
+        if (ended.stopped) end_stopped(*ended.stopped);
+        draw();
+        return complete();
     }
-    if (may_be_done) refuse_early();
-    throw_if_interrupted();
 
-    Ended ended;
-    if (simulated) {
-        log_info("{}: already simulated", directory.root().string());
-    } else {
-        record = begin_record(scene, options, identity, input);
-        ended = simulate({scene, input, directory, plots, record, watch, options.keep_every},
-                         cost.warning);
+  private:
+    std::vector<InputMesh> read_input() {
+        const auto lap = watch_.lap("read");
+        return read_input_meshes(scene_);
     }
-    const int reached = record.at("frames").get<int>();
-    if (ended.interrupted) {
-        log_text(fmt::format("{} of {} frames are finished; swage render {} draws them", reached,
-                             frame_count(scene), directory.root().string()));
-        throw *ended.interrupted;
+
+    bool has_record() const {
+        std::error_code unknown;
+        return std::filesystem::exists(RunDirectory::record_in(options_.out), unknown);
     }
-    const auto draw = [&] {
-        if (!simulated) draw_plots();
-        if (!options.draw || wanted.first > reached) return;
-        const FrameStore store(directory.store());
-        const FrameRange drawn{wanted.first, std::min(wanted.last, reached)};
-        record["drawing"] =
-            drawing_json(draw_run(store, scene.render, drawn, files, watch, run_names_of(record)));
-    };
-    const auto tell_use = [&] {
-        for (const Json& stage : record.at("stages")) {
-            for (const std::string& text : use_texts(stage)) log_info("{}", text);
+
+    void refuse_early() const {
+        refuse_excess(cost_, options_);
+        if (options_.draw) check_drawing(scene_.render);
+    }
+
+    // Where nothing can have been done yet, nothing is made before it is known to be worth it.
+    RunDirectory enter() const {
+        if (!may_be_done_) refuse_early();
+        return RunDirectory(options_.out, identity_, options_.fresh, options_.go_on);
+    }
+
+    // Whether all of its stages are done already.
+    bool take_up_earlier() {
+        if (!may_be_done_ || directory_.is_changed()) return false;
+        std::optional<Json> earlier = read_record(directory_.record());
+        if (!earlier || !stands(*earlier, scene_, directory_)) return false;
+        record_ = std::move(*earlier);
+        return true;
+    }
+
+    Json tell_that_it_is_done() {
+        const bool is_complete = record_.at("state") == RunState::complete;
+        if (is_complete) directory_.remove_replaced();
+        log_info("{}: {}", directory_.root().string(),
+                 is_complete ? "already complete"
+                             : "already simulated; nothing is drawn because of --no-render");
+        return std::move(record_);
+    }
+
+    Ended simulate_unless_done() {
+        if (is_simulated_) {
+            log_info("{}: already simulated", directory_.root().string());
+            return {};
         }
-    };
-    if (ended.stopped) {
+        record_ = begin_record(scene_, options_, identity_, input_);
+        return simulate({scene_, input_, directory_, plots_, record_, watch_, options_.keep_every},
+                        cost_.warning);
+    }
+
+    int reached() const { return record_.at("frames").get<int>(); }
+
+    [[noreturn]] void leave(const Interrupted& interrupted) const {
+        log_text(fmt::format("{} of {} frames are finished; swage render {} draws them", reached(),
+                             frame_count(scene_), directory_.root().string()));
+        throw interrupted;
+    }
+
+    // What ended the run is its outcome, whether that can be drawn and told or not.
+    [[noreturn]] void end_stopped(const Error& stopped) {
         tell_use();
-        // What ended the run is its outcome, whether that can be drawn and told or not.
         try {
             draw();
-            write_record(directory, record, watch);
+            write_record(directory_, record_, watch_);
         } catch (const std::exception& error) {
             const std::optional<Error> failure = failure_of(error);
             if (!failure) throw;
             log_warning("{}", failure->what());
         }
-        throw StoppedRun(*ended.stopped, std::move(record));
+        throw StoppedRun(stopped, std::move(record_));
     }
-    draw();
-    record["state"] = RunState::complete;
-    write_record(directory, record, watch);
-    directory.remove_replaced();
-    tell_use();
-    log_info("{}: done", directory.root().string());
-    return record;
+
+    // What may fail, and is no loss, comes after everything else of the simulation.
+    void draw_plots() {
+        const auto lap = watch_.lap("plot");
+        plots_.draw();
+        record_["plots"]["warnings"] = plots_.warnings();
+        write_record(directory_, record_, watch_);
+        throw_if_interrupted();
+    }
+
+    void draw() {
+        if (!is_simulated_) draw_plots();
+        if (!options_.draw || wanted_.first > reached()) return;
+        const FrameStore store(directory_.store());
+        const FrameRange drawn{wanted_.first, std::min(wanted_.last, reached())};
+        record_["drawing"] = drawing_json(
+            draw_run(store, scene_.render, drawn, files_, watch_, run_names_of(record_)));
+    }
+
+    void tell_use() const {
+        for (const Json& stage : record_.at("stages")) {
+            for (const std::string& text : use_texts(stage)) log_info("{}", text);
+        }
+    }
+
+    Json complete() {
+        record_["state"] = RunState::complete;
+        write_record(directory_, record_, watch_);
+        directory_.remove_replaced();
+        tell_use();
+        log_info("{}: done", directory_.root().string());
+        return std::move(record_);
+    }
+
+    const SceneSpec& scene_;
+    const RunOptions& options_;
+    Stopwatch watch_;
+    const FrameRange wanted_;
+    const std::vector<InputMesh> input_;
+    const RunCost cost_;
+    const RunIdentity identity_;
+    const bool may_be_done_;  // there is a record
+    RunDirectory directory_;
+    const DrawnFiles files_;
+    Plots plots_;
+    Json record_;
+    bool is_simulated_ = false;  // by an earlier one
+};
+
+}  // namespace
+
+Json run_scene(const SceneSpec& scene, const RunOptions& options) {
+    return SceneRun(scene, options).run();
 }
 
 }  // namespace swage
