@@ -2,14 +2,12 @@
 #include "pipeline/stage.h"
 
 #include <algorithm>
-#include <iterator>
 #include <span>
 
 #include "base/atomic_file.h"
 #include "base/bytes.h"
 #include "base/failure.h"
 #include "base/units.h"
-#include "geometry/mesh_write.h"
 #include "pipeline/body_table.h"
 #include "pipeline/curves.h"
 #include "pipeline/limit_watch.h"
@@ -19,6 +17,7 @@
 #include "pipeline/run_directory.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage_machine.h"
+#include "pipeline/stage_meshes.h"
 #include "pipeline/stage_verdict.h"
 #include "pipeline/stage_way.h"
 #include "pipeline/start_overlap.h"
@@ -29,9 +28,7 @@
 #include "scene/product_names.h"
 #include "sim/advance.h"
 #include "sim/sever.h"
-#include "skin/cut_layout.h"
 #include "skin/cut_mesh.h"
-#include "skin/skin_pieces.h"
 
 namespace swage {
 
@@ -40,25 +37,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kOpenSkin = "the skin could not be closed everywhere that matter broke";
-
-// OBJ has no place for fields.
-void write_meshes(const WorkPiece& body, const std::vector<SkinField>& fields,
-                  const SkinFieldValues& values, const fs::path& stem) {
-    std::vector<VertexValues> of_vertices;
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-        const SkinFieldWords& words = words_of(fields[f]);
-        std::string comment = fmt::format("{}: {}", words.name, words.title);
-        if (*words.unit != 0) comment += fmt::format(" [{}]", words.unit);
-        of_vertices.push_back({words.name, std::move(comment), &values[f]});
-    }
-    TriMesh mesh = body.deformed();
-    write_ply(fs::path(stem) += ".ply", mesh, of_vertices);
-    mesh.position = body.skin.position;
-    lay_out_cuts(mesh);
-    mesh.position = body.position;
-    const std::vector<int> piece = skin_pieces(body.skin, body.mount, body.matter);
-    write_obj(fs::path(stem) += ".obj", mesh, objects_of_pieces(mesh, piece, body.label));
-}
 
 // The skin is cut along the whole path of the stage's blades when they reach the matter.
 void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& piece, int frame,
@@ -102,26 +80,10 @@ class StageRun {
           way_(stage, machine_, bodies.front().matter, context.scene.duration_of(stage)),
           limits_(stage, machine_),
           use_(bodies),
-          cuts_(bodies.size(), 0) {
-        const std::string axes = axes_text(machine_.frame);
-        if (!axes.empty()) log_info("{}: {}", stage.name, axes);
-        for (const std::string& load : load_texts(machine_)) log_info("{}: {}", stage.name, load);
-        for (const std::string& limit : limit_texts(machine_.spec)) {
-            log_info("{}: {}", stage.name, limit);
-        }
-        for (const std::string& note : machine_.notes) log_info("{}: {}", stage.name, note);
-        std::vector<std::string> told =
-            tool_overlaps(machine_, named(bodies),
-                          in_motion(stage.sim.solver) && &stage == &context.scene.stage.front());
-        const std::string note = stiffness_note(stage, named(bodies));
-        if (!note.empty()) told.push_back(note);
-        for (const std::string& warning : told) {
-            outcome_.warning.push_back(fmt::format("{}: {}", stage.name, warning));
-            log_warning("{}", outcome_.warning.back());
-        }
-        for (const BodySpec& body : context.scene.body) {
-            meshes_.push_back(context.root / "meshes" / mesh_name(context.scene, stage, body));
-        }
+          cuts_(bodies.size(), 0),
+          meshes_(context.scene, stage, context.root) {
+        tell_machine();
+        warn_of_start();
     }
 
     StageOutcome run(int last_frame) {
@@ -129,13 +91,41 @@ class StageRun {
         for (WorkPiece& body : bodies_) matter.push_back(&body.matter);
         Simulation simulation(matter, machine_.apparatus, stage_.sim);
         context_.begin();
-        if (each_frame()) {
-            for (const fs::path& folder : meshes_) make_folder(folder);
-        }
+        meshes_.make_folders();
         before_ = std::max(last_frame, 1);
-        if (context_.from == nullptr) record_start(last_frame == 0);
+        if (context_.from == nullptr) {
+            context_.recorder.set_machine(machine_.apparatus);
+            if (last_frame == 0) record_start();
+        }
         begin_books(simulation);
         if (context_.from != nullptr) come_back(simulation, *context_.from);
+        work_frames(simulation);
+        const auto lap = context_.watch.lap("write");
+        write_products();
+        finish();
+        return std::move(outcome_);
+    }
+
+  private:
+    void tell_machine() const {
+        const auto tell = [&](const std::string& text) { log_info("{}: {}", stage_.name, text); };
+        const std::string axes = axes_text(machine_.frame);
+        if (!axes.empty()) tell(axes);
+        for (const std::string& load : load_texts(machine_)) tell(load);
+        for (const std::string& limit : limit_texts(machine_.spec)) tell(limit);
+        for (const std::string& note : machine_.notes) tell(note);
+    }
+
+    void warn_of_start() {
+        const bool to_move_as_molded =
+            in_motion(stage_.sim.solver) && &stage_ == &context_.scene.stage.front();
+        std::vector<std::string> told = tool_overlaps(machine_, named(bodies_), to_move_as_molded);
+        const std::string note = stiffness_note(stage_, named(bodies_));
+        if (!note.empty()) told.push_back(note);
+        for (const std::string& one : told) warn(fmt::format("{}: {}", stage_.name, one));
+    }
+
+    void work_frames(Simulation& simulation) {
         const int gone = context_.from != nullptr ? context_.from->frame - before_ : 0;
         for (int n = gone + 1; n <= stage_.frames && !outcome_.stopped; ++n) {
             if (!work(simulation, n, before_ + n)) break;
@@ -144,14 +134,13 @@ class StageRun {
                 keep_stage(simulation, before_ + n);
             }
         }
-        const auto lap = context_.watch.lap("write");
+    }
+
+    void write_products() {
         // Where memory ran out, matter may stand in the middle of a step.
         const bool is_whole = !outcome_.stopped || outcome_.stopped->code() != ExitCode::resources;
         for (std::size_t b = 0; is_whole && b < bodies_.size(); ++b) {
-            keep([&] {
-                write_meshes(bodies_[b], fields(), fields_on_skin(bodies_[b], fields()),
-                             meshes_[b]);
-            });
+            keep([&] { meshes_.write_end(b, bodies_[b]); });
         }
         const fs::path folder = context_.root / "curves";
         const fs::path table = folder / (stage_.name + ".csv");
@@ -166,20 +155,15 @@ class StageRun {
                                  body_table_->csv_text());
             });
         }
-        finish();
-        return std::move(outcome_);
     }
 
-  private:
     std::vector<ProbePlace> probes() const { return probe_places(context_.scene.body, bodies_); }
-    bool each_frame() const { return context_.scene.output.meshes_per_frame; }
-    const std::vector<SkinField>& fields() const { return context_.scene.output.fields; }
-    std::vector<SkinFieldValues> fields_now() const { return fields_on_skins(bodies_, fields()); }
-    void write_meshes_of(int frame, const std::vector<SkinFieldValues>& values) const {
-        for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            write_meshes(bodies_[b], fields(), values[b],
-                         meshes_[b] / frame_name(frame, context_.scene.render.first_frame));
-        }
+    std::vector<SkinFieldValues> fields_now() const {
+        return fields_on_skins(bodies_, context_.scene.output.fields);
+    }
+    void warn(std::string sentence) {
+        log_warning("{}", sentence);
+        outcome_.warning.push_back(std::move(sentence));
     }
     // What cannot be written, as on a full disk or for want of memory, ends the stage where it is,
     // and no more. What cannot be written after that is told.
@@ -190,8 +174,7 @@ class StageRun {
         } catch (const std::exception& error) {
             const Error failure = failure_that_stops(ExitCode::output, error);
             if (outcome_.stopped) {
-                outcome_.warning.push_back(failure.what());
-                log_warning("{}", failure.what());
+                warn(failure.what());
             } else {
                 outcome_.stopped = failure;
             }
@@ -199,12 +182,10 @@ class StageRun {
     }
 
     // The untouched start of the run has a frame of its own.
-    void record_start(bool of_run) {
-        context_.recorder.set_machine(machine_.apparatus);
-        if (!of_run) return;
+    void record_start() {
         const std::vector<SkinFieldValues> values = fields_now();
         context_.recorder.add_frame(bodies_, way_.now(), values);
-        if (each_frame()) keep([&] { write_meshes_of(before_, values); });
+        keep([&] { meshes_.write_frame(before_, bodies_, values); });
     }
 
     void begin_books(const Simulation& simulation) {
@@ -343,7 +324,7 @@ class StageRun {
         }();
         const auto lap = context_.watch.lap("write");
         context_.recorder.add_frame(bodies_, way_.now(), values);
-        if (each_frame()) write_meshes_of(number, values);
+        meshes_.write_frame(number, bodies_, values);
         context_.progress.advance(number - 1, stage_.name);
     }
 
@@ -365,24 +346,17 @@ class StageRun {
                                  : outcome_.stopped   ? StageEnded::stopped
                                                       : StageEnded::wholly;
         StageVerdict verdict = judge_stage(end, pieces_before_, ended);
-        const std::size_t known = outcome_.warning.size();
-        for (std::string& line : warnings_.told(stage_.name)) {
-            outcome_.warning.push_back(std::move(line));
-        }
-        for (std::string& line : limits_.warnings(ended == StageEnded::wholly)) {
-            outcome_.warning.push_back(std::move(line));
+        for (std::string& one : warnings_.told(stage_.name)) warn(std::move(one));
+        for (std::string& one : limits_.warnings(ended == StageEnded::wholly)) {
+            warn(std::move(one));
         }
         if (way_.lost() > 0) {
-            outcome_.warning.push_back(
+            warn(
                 fmt::format("{}: in {} of its frames the machine's motion is more than {} steps "
                             "can follow; use more frames",
                             stage_.name, way_.lost(), kMostLegs));
         }
-        std::move(verdict.warning.begin(), verdict.warning.end(),
-                  std::back_inserter(outcome_.warning));
-        for (std::size_t n = known; n < outcome_.warning.size(); ++n) {
-            log_warning("{}", outcome_.warning[n]);
-        }
+        for (std::string& one : verdict.warning) warn(std::move(one));
         outcome_.steps = totals_.iterations + totals_.steps;
         outcome_.record = stage_record(end, *curves_, verdict.overlap, outcome_.warning);
         limits_.add_to(outcome_.record);
@@ -403,7 +377,7 @@ class StageRun {
     LimitWatch limits_;
     UseWatch use_;
     std::vector<char> cuts_;  // a body each: whether its cut is settled
-    std::vector<fs::path> meshes_;
+    const StageMeshes meshes_;
     int before_ = 0;  // the last frame before the stage
     std::optional<StageCurves> curves_;
     std::optional<BodyTable> body_table_;  // of a stage in motion
