@@ -26,8 +26,9 @@ RunOptions options_of(const RunArguments& given, const SceneSpec& scene) {
                                     : std::filesystem::path(given.out);
     options.overrides = given.scene.overrides;
     options.draw = !given.no_render;
-    options.fresh = given.fresh;
-    options.go_on = given.go_on;
+    options.earlier = given.fresh   ? EarlierRun::replace
+                      : given.go_on ? EarlierRun::extend
+                                    : EarlierRun::finish;
     options.insist = given.force;
     if (!given.keep_every.empty()) {
         options.keep_every = parse_quantity(given.keep_every, Quantity::time);

@@ -68,7 +68,7 @@ class SceneRun {
           input_(read_input()),
           cost_(estimate_cost(scene, input_, options)),
           identity_(identity_of(scene, input_, options)),
-          may_be_done_(!options.fresh && has_record()),
+          may_be_done_(options.earlier != EarlierRun::replace && has_record()),
           directory_(enter()),
           files_{directory_.root(), scene.render.first_frame},
           plots_(plots_of(scene, directory_)) {}
@@ -110,7 +110,7 @@ class SceneRun {
     // Where nothing can have been done yet, nothing is made before it is known to be worth it.
     RunDirectory enter() const {
         if (!may_be_done_) refuse_early();
-        return RunDirectory(options_.out, identity_, options_.fresh, options_.go_on);
+        return RunDirectory(options_.out, identity_, options_.earlier);
     }
 
     // Whether all of its stages are done already.

@@ -105,13 +105,12 @@ bool holds_run(const fs::path& folder) {
     return fs::exists(folder / kIdentityName, unknown);
 }
 
-RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bool fresh,
-                           bool go_on)
+RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, EarlierRun earlier)
     : root_(root.has_filename() ? root : root.parent_path()),
       folder_(root_),
       identity_text_(identity_text(identity)),
       stage_keys_(identity.stage_key),
-      anew_(fresh) {
+      anew_(earlier == EarlierRun::replace) {
     // One that is being made holds files before it is a run.
     if (FolderLock::may_hold(root_)) lock_.emplace(root_);
     if (!FolderLock::is_all_of(root_) && !holds_run(root_)) {
@@ -121,11 +120,12 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
     }
     if (!lock_) lock_.emplace(root_);
     remove_temporaries(root_, 0);
-    if (!anew_) claim(identity, go_on);
+    if (!anew_) claim(identity, earlier);
     set_unfinished_work(root_);
 }
 
-void RunDirectory::claim(const RunIdentity& identity, bool go_on) {
+void RunDirectory::claim(const RunIdentity& identity, EarlierRun earlier) {
+    const bool extends = earlier == EarlierRun::extend;
     const fs::path file = root_ / kIdentityName;
     std::error_code unknown;
     if (!fs::exists(file, unknown) || !holds_products(root_)) {
@@ -136,7 +136,7 @@ void RunDirectory::claim(const RunIdentity& identity, bool go_on) {
     if (found.empty()) return;
     const int kept = last_kept(static_cast<int>(stage_keys_.size()) - 1);
     const std::string change = joined(found, "; ");
-    if (go_on && (kept > 0 || fs::exists(stage_mark(), unknown))) {
+    if (extends && (kept > 0 || fs::exists(stage_mark(), unknown))) {
         if (fs::exists(fs::symlink_status(replaced(), unknown)) && !holds_run(replaced())) {
             fail(ExitCode::foreign,
                  "{}: is where the run that is there would be set aside, and is not a swage run: "
@@ -151,7 +151,7 @@ void RunDirectory::claim(const RunIdentity& identity, bool go_on) {
     fail(ExitCode::foreign,
          "{}: belongs to another run: {}{}; choose another --out, or {}--fresh to throw {} away",
          root_.string(), change,
-         go_on ? "; and it has kept no stage to go on from that is the same" : "",
+         extends ? "; and it has kept no stage to go on from that is the same" : "",
          kept > 0 ? "--go-on to keep " + first + ", or " : "",
          holds_run(replaced()) ? "that run and the complete one in replaced/" : "that run");
 }

@@ -13,6 +13,7 @@
 #include "pipeline/folder_lock.h"
 #include "pipeline/made_folder.h"
 #include "pipeline/run_identity.h"
+#include "pipeline/run_options.h"
 #include "render/settings.h"
 
 namespace swage {
@@ -24,12 +25,12 @@ class RunDirectory {
   public:
     // Creates the directory, and those that it is to lie in, or enters it. Throws Error(output)
     // when it cannot be written, Error(foreign) when it holds anything but this run, or while
-    // another process writes in it. `fresh`: whatever run it holds, that is to make room in
-    // begin(). One that ended before its first frame always does. `go_on`: one whose first stages
-    // are the same may be there, if it has kept what is to be gone on from; where it is done it
-    // stays whole until the new one is.
-    RunDirectory(const std::filesystem::path& root, const RunIdentity& identity, bool fresh,
-                 bool go_on = false);
+    // another process writes in it. One that is to be replaced makes room in begin(); one that
+    // ended before its first frame always does. One that is to be extended has the same first
+    // stages and has kept what is to be gone on from; where it is done it stays whole until the new
+    // one is.
+    RunDirectory(const std::filesystem::path& root, const RunIdentity& identity,
+                 EarlierRun earlier = EarlierRun::finish);
     // Lets others in. Where no run has begun, neither this one nor another, nothing is left of it.
     ~RunDirectory();
     RunDirectory(const RunDirectory&) = delete;
@@ -76,7 +77,7 @@ class RunDirectory {
     static std::filesystem::path exported(const std::filesystem::path& run) { return run / "usd"; }
 
   private:
-    void claim(const RunIdentity& identity, bool go_on);
+    void claim(const RunIdentity& identity, EarlierRun earlier);
     std::unique_ptr<FolderLock> lock_of_drawing() const;
     void set_aside() const;
     void remove_unbegun();

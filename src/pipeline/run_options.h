@@ -26,13 +26,19 @@ inline void refuse_frames_beyond(int count, const FrameRange& wanted, int first_
          wanted.first + later, wanted.last + later, 1 + later, count + later);
 }
 
+// What becomes of a run that stands in the directory already.
+enum class EarlierRun {
+    finish,   // it is this one and is brought to its end; another is refused
+    extend,   // another is gone on from up to its first stage that is another now
+    replace,  // it goes, whatever it is
+};
+
 struct RunOptions {
     std::filesystem::path out;           // the run directory
     std::vector<std::string> overrides;  // "key=value" as given; part of what makes the run
     std::optional<FrameRange> frames;    // draw only these; none: all
     bool draw = true;                    // false: no picture, and nothing of OpenGL is touched
-    bool fresh = false;                  // throw away what an earlier run left in `out`
-    bool go_on = false;  // from what it did before the first stage that is another now
+    EarlierRun earlier = EarlierRun::finish;
     std::optional<double> keep_every{};  // keeps a stage that it is within after so long [s]
     bool insist = false;                 // run even if it seems to need more than there is
 };

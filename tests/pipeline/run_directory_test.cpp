@@ -32,7 +32,7 @@ ExitCode code_of(const std::function<void()>& act) {
 }
 
 void begin_run(const fs::path& root, const std::string& scene_hash) {
-    RunDirectory run(root, identity_of(scene_hash), false);
+    RunDirectory run(root, identity_of(scene_hash));
     run.begin();
 }
 
@@ -46,25 +46,24 @@ TEST_CASE("a run enters its own directory again") {
     begin_run(root, "1");
     CHECK(fs::exists(root / ".swage-run"));
     CHECK_FALSE(fs::exists(root / ".swage-lock"));
-    CHECK(code_of([&] { const RunDirectory again(root, identity_of("1"), false); }) ==
-          ExitCode::done);
+    CHECK(code_of([&] { const RunDirectory again(root, identity_of("1")); }) == ExitCode::done);
 }
 
 TEST_CASE("of a run that does not begin nothing is left but what was there") {
     const Scratch scratch;
     const fs::path root = scratch.path() / "today" / "run";
-    for (const bool fresh : {false, true}) {
-        { const RunDirectory run(root, identity_of("1"), fresh); }
+    for (const EarlierRun earlier : {EarlierRun::finish, EarlierRun::replace}) {
+        { const RunDirectory run(root, identity_of("1"), earlier); }
         CHECK(fs::is_empty(scratch.path()));
     }
     fs::create_directory(scratch.path() / "today");
-    { const RunDirectory run(root / "", identity_of("1"), false); }
+    { const RunDirectory run(root / "", identity_of("1")); }
     CHECK(fs::is_empty(scratch.path() / "today"));
     fs::create_directory(root);
-    { const RunDirectory run(root, identity_of("1"), false); }
+    { const RunDirectory run(root, identity_of("1")); }
     CHECK(fs::is_empty(root));
     begin_run(root, "1");
-    { const RunDirectory run(root, identity_of("1"), false); }
+    { const RunDirectory run(root, identity_of("1")); }
     CHECK(fs::exists(root));
 }
 
@@ -74,11 +73,11 @@ TEST_CASE("another run's directory is refused and left as it is") {
     begin_run(root, "1");
     put_text(root / "run.json", "{}");
     // A fresh run that comes to nothing leaves it, too.
-    { const RunDirectory fresh(root, identity_of("2"), true); }
+    { const RunDirectory fresh(root, identity_of("2"), EarlierRun::replace); }
     CHECK(fs::exists(root / "run.json"));
     std::string told;
     try {
-        const RunDirectory other(root, identity_of("2"), false);
+        const RunDirectory other(root, identity_of("2"));
     } catch (const Error& error) {
         CHECK(error.code() == ExitCode::foreign);
         told = error.what();
@@ -89,22 +88,20 @@ TEST_CASE("another run's directory is refused and left as it is") {
     CHECK_FALSE(fs::exists(root / ".swage-lock"));
 
     {
-        RunDirectory fresh(root, identity_of("2"), true);
+        RunDirectory fresh(root, identity_of("2"), EarlierRun::replace);
         fresh.begin();
     }
     CHECK_FALSE(fs::exists(root / "run.json"));
     put_text(root / "run.json", "{}");
-    CHECK(code_of([&] { const RunDirectory then(root, identity_of("1"), false); }) ==
-          ExitCode::foreign);
-    CHECK(code_of([&] { const RunDirectory now(root, identity_of("2"), false); }) ==
-          ExitCode::done);
+    CHECK(code_of([&] { const RunDirectory then(root, identity_of("1")); }) == ExitCode::foreign);
+    CHECK(code_of([&] { const RunDirectory now(root, identity_of("2")); }) == ExitCode::done);
 }
 
 TEST_CASE("a directory of something else is refused, even when all is to be made fresh") {
     const Scratch scratch;
     put_text(scratch.path() / "thesis.txt", "dear");
-    for (bool fresh : {false, true}) {
-        CHECK(code_of([&] { const RunDirectory run(scratch.path(), identity_of("1"), fresh); }) ==
+    for (const EarlierRun earlier : {EarlierRun::finish, EarlierRun::replace}) {
+        CHECK(code_of([&] { const RunDirectory run(scratch.path(), identity_of("1"), earlier); }) ==
               ExitCode::foreign);
     }
     CHECK(fs::exists(scratch.path() / "thesis.txt"));
@@ -114,10 +111,10 @@ TEST_CASE("what nobody can read whose run it is is refused at once, and made fre
     const Scratch scratch;
     put_text(scratch.path() / "run.json", "{}");
     REQUIRE(::mkfifo((scratch.path() / ".swage-run").c_str(), 0600) == 0);
-    CHECK(code_of([&] { const RunDirectory run(scratch.path(), identity_of("1"), false); }) ==
+    CHECK(code_of([&] { const RunDirectory run(scratch.path(), identity_of("1")); }) ==
           ExitCode::foreign);
     {
-        RunDirectory fresh(scratch.path(), identity_of("1"), true);
+        RunDirectory fresh(scratch.path(), identity_of("1"), EarlierRun::replace);
         fresh.begin();
     }
     CHECK(fs::is_regular_file(scratch.path() / ".swage-run"));
@@ -127,7 +124,7 @@ TEST_CASE("a directory that cannot be made is an output error") {
     const Scratch scratch;
     put_text(scratch.path() / "file", "");
     const auto enter = [&](const fs::path& root) {
-        return code_of([&] { const RunDirectory run(root, identity_of("1"), false); });
+        return code_of([&] { const RunDirectory run(root, identity_of("1")); });
     };
     CHECK(enter(scratch.path() / "file") == ExitCode::output);
     CHECK(enter(scratch.path() / "file" / "below") == ExitCode::output);
@@ -137,9 +134,9 @@ TEST_CASE("a directory that cannot be made is an output error") {
 TEST_CASE("two runs at once in one directory: the second is refused and told who is first") {
     const Scratch scratch;
     const fs::path root = scratch.path() / "run";
-    const RunDirectory first(root, identity_of("1"), false);
+    const RunDirectory first(root, identity_of("1"));
     try {
-        const RunDirectory second(root, identity_of("1"), false);
+        const RunDirectory second(root, identity_of("1"));
         FAIL("both got in");
     } catch (const Error& error) {
         CHECK(error.code() == ExitCode::foreign);
@@ -166,7 +163,7 @@ TEST_CASE("a run is not made anew while it is drawn") {
     begin_run(root, "1");
     put_text(root / "motion.bin", "frames");
     const RenderDirectory drawing(RunDirectory::drawn_again(root), true);
-    RunDirectory anew(root, identity_of("2"), true);
+    RunDirectory anew(root, identity_of("2"), EarlierRun::replace);
     CHECK_THROWS_WITH(anew.begin(), Catch::Contains("is writing there"));
     CHECK(fs::exists(root / "motion.bin"));
 }
@@ -200,10 +197,9 @@ TEST_CASE("a run that is only being made is not taken for files of somebody else
     const fs::path root = scratch.path() / "run";
     fs::create_directories(root / "meshes");
     const FolderLock first(root);
-    CHECK_THROWS_WITH(RunDirectory(root, identity_of("1"), false),
-                      Catch::Contains("is writing there"));
+    CHECK_THROWS_WITH(RunDirectory(root, identity_of("1")), Catch::Contains("is writing there"));
     put_text(root / ".swage-lock", "");  // as long as it has not said who it is
-    CHECK_THROWS_WITH(RunDirectory(root, identity_of("1"), false),
+    CHECK_THROWS_WITH(RunDirectory(root, identity_of("1")),
                       Catch::Contains("another process is writing there"));
 }
 
@@ -215,13 +211,11 @@ TEST_CASE("the lock of a process that died here is taken over, that of another h
     REQUIRE(::gethostname(host, sizeof host - 1) == 0);
     put_text(root / ".swage-lock", fmt::format("4194303 {}\n", host));
     put_text(root / ".frame_0007.part4194303.png", "half a pic");
-    CHECK(code_of([&] { const RunDirectory run(root, identity_of("1"), false); }) ==
-          ExitCode::done);
+    CHECK(code_of([&] { const RunDirectory run(root, identity_of("1")); }) == ExitCode::done);
     CHECK_FALSE(fs::exists(root / ".frame_0007.part4194303.png"));
 
     put_text(root / ".swage-lock", "12 elsewhere.example\n");
-    CHECK(code_of([&] { const RunDirectory run(root, identity_of("1"), false); }) ==
-          ExitCode::foreign);
+    CHECK(code_of([&] { const RunDirectory run(root, identity_of("1")); }) == ExitCode::foreign);
 }
 
 TEST_CASE("what differs between two runs is told item by item") {
@@ -249,13 +243,13 @@ TEST_CASE("of a machine that was edited it is told what it says now and what it 
     };
     const fs::path root = scratch.path() / "run";
     {
-        RunDirectory run(root, with("# one\nangle = 1\nframes = 3\nframes = 3\n"), false);
+        RunDirectory run(root, with("# one\nangle = 1\nframes = 3\nframes = 3\n"));
         run.begin();
         put_text(root / "run.json", "{}");
     }
     const auto refusal = [&](const RunIdentity& identity) {
         try {
-            const RunDirectory other(root, identity, false);
+            const RunDirectory other(root, identity);
         } catch (const Error& error) {
             return std::string(error.what());
         }
@@ -288,11 +282,11 @@ TEST_CASE("of a scene it is told which keys say something else now") {
                                                                "c is 4 now, not there then"});
     const Scratch scratch;
     {
-        RunDirectory run(scratch.path() / "run", there, false);
+        RunDirectory run(scratch.path() / "run", there);
         run.begin();
         put_text(scratch.path() / "run/run.json", "{}");
     }
-    CHECK_THROWS_WITH(RunDirectory(scratch.path() / "run", here, false),
+    CHECK_THROWS_WITH(RunDirectory(scratch.path() / "run", here),
                       Catch::Contains("another run: a is not there now, one then; b is 3 cm now"));
     for (int n = 0; n < 9; ++n) here.said.push_back({fmt::format("d.{}", n), "", "d"});
     CHECK(differences(there, here).back() == "and 7 keys more");
