@@ -163,6 +163,75 @@ int sheet_columns(int pictures) {
     return std::max(1, static_cast<int>(std::ceil(std::sqrt(pictures) - 1e-9)));
 }
 
+// Writes a picture, and the passes beside it, while the next is drawn.
+class PictureWriter {
+  public:
+    PictureWriter(const DrawnFiles& files, const RenderSettings& settings, const FrameRange& frames,
+                  PassWriter& passes)
+        : files_(files), passes_(passes), on_sheet_(sheet_frames(frames)) {
+        if (settings.has_film()) {
+            film_ = std::make_unique<Film>(files.film(), settings.width, settings.height,
+                                           settings.frame_rate);
+        }
+    }
+
+    // Once those before are written.
+    void write(int frame, int machine, Image image, PassPicture beside) {
+        wait();
+        writing_ = std::async(std::launch::async, [this, frame, machine, image = std::move(image),
+                                                   beside = std::move(beside)] {
+            write_now(frame, machine, image, beside);
+        });
+    }
+
+    void wait() {
+        if (writing_.valid()) writing_.get();
+    }
+
+    // What is made of all of them.
+    void finish(DrawOutcome& outcome) {
+        passes_.finish();
+        write_png(files_.contact_sheet(),
+                  contact_sheet(thumbnail_, sheet_columns(static_cast<int>(thumbnail_.size()))));
+        if (!film_) return;
+        outcome.film = film_->finish();
+        if (!outcome.film) outcome.warning.push_back(film_->warning());
+    }
+
+  private:
+    void write_now(int frame, int machine, const Image& image, const PassPicture& beside) {
+        write_png(files_.still(frame), image);
+        if (beside.layers.width > 0) passes_.write(frame, machine, beside);
+        if (film_) film_->add(image);
+        if (std::binary_search(on_sheet_.begin(), on_sheet_.end(), frame)) {
+            thumbnail_.push_back(
+                thumbnail(on_paper(image), kSheetPictureWidth, kSheetPictureWidth));
+        }
+    }
+
+    const DrawnFiles& files_;
+    PassWriter& passes_;
+    std::unique_ptr<Film> film_;
+    const std::vector<int> on_sheet_;
+    std::vector<Image> thumbnail_;
+    std::future<void> writing_;  // ends before what it writes with
+};
+
+DrawOutcome outcome_of(const Shot& shot, const FrameRange& frames, const Renderer& renderer,
+                       const std::optional<FieldLook>& look) {
+    DrawOutcome outcome;
+    outcome.renderer = renderer.renderer_string();
+    outcome.width = shot.settings.width;
+    outcome.height = shot.settings.height;
+    outcome.frames = frames;
+    outcome.first_frame = shot.settings.first_frame;
+    outcome.color = shot.settings.color;
+    outcome.view = shot.chosen;
+    outcome.passes = shot.settings.passes;
+    if (look) outcome.color_range = look->range();
+    return outcome;
+}
+
 }  // namespace
 
 void check_drawing(const RenderSettings& settings) { try_canvas(settings.gl, thread_count()); }
@@ -181,27 +250,11 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     Renderer renderer(settings, action.bounds, action.ground_height, thread_count(),
                       action.outline);
     log_verbose("drawing by {}", renderer.renderer_string());
-    DrawOutcome outcome;
-    outcome.renderer = renderer.renderer_string();
-    outcome.width = settings.width;
-    outcome.height = settings.height;
-    outcome.frames = frames;
-    outcome.first_frame = settings.first_frame;
-    outcome.color = settings.color;
-    outcome.view = shot.chosen;
-    outcome.passes = settings.passes;
-    if (look) outcome.color_range = look->range();
-    std::unique_ptr<Film> film;
-    if (settings.has_film()) {
-        film = std::make_unique<Film>(files.film(), settings.width, settings.height,
-                                      settings.frame_rate);
-    }
-    const std::vector<int> on_sheet = sheet_frames(frames);
-    std::vector<Image> thumbnails;
+    DrawOutcome outcome = outcome_of(shot, frames, renderer, look);
     FrameSource source(store, shot, look ? &*look : nullptr);
     PassWriter passes(store, settings, files, names, shot.drawn_from_world);
+    PictureWriter writer(files, settings, frames, passes);
     Progress progress("draw", frames.last - frames.first + 1);
-    std::future<void> writing;  // of the picture before, while the next is drawn
     for (int frame = frames.first; frame <= frames.last; ++frame) {
         throw_if_interrupted();
         Image image;
@@ -223,27 +276,12 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
             }
         }
         const auto lap = watch.lap("wait for files");
-        if (writing.valid()) writing.get();
-        writing =
-            std::async(std::launch::async, [&, frame, machine = source.machine(),
-                                            beside = std::move(beside), image = std::move(image)] {
-                write_png(files.still(frame), image);
-                if (beside.layers.width > 0) passes.write(frame, machine, beside);
-                if (film) film->add(image);
-                if (std::binary_search(on_sheet.begin(), on_sheet.end(), frame)) {
-                    thumbnails.push_back(
-                        thumbnail(on_paper(image), kSheetPictureWidth, kSheetPictureWidth));
-                }
-            });
+        writer.write(frame, source.machine(), std::move(image), std::move(beside));
         progress.advance(frame - frames.first + 1);
     }
-    if (writing.valid()) writing.get();
+    writer.wait();
     const auto lap = watch.lap("film and sheet");
-    passes.finish();
-    write_png(files.contact_sheet(),
-              contact_sheet(thumbnails, sheet_columns(static_cast<int>(thumbnails.size()))));
-    if (film) outcome.film = film->finish();
-    if (film && !outcome.film) outcome.warning.push_back(film->warning());
+    writer.finish(outcome);
     return outcome;
 }
 
