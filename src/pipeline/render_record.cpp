@@ -7,6 +7,35 @@
 
 namespace swage {
 
+namespace {
+
+Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json camera_key_json(const CameraKey& key) {
+    Json json = {
+        {"at", key.at}, {"azimuth", key.azimuth}, {"elevation", key.elevation}, {"zoom", key.zoom}};
+    if (key.eye) json["eye"] = vector_json(*key.eye);
+    if (key.target) json["target"] = vector_json(*key.target);
+    return json;
+}
+
+Vec3 vector_of(const Json& json) {
+    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+CameraKey camera_key_of(const Json& json) {
+    CameraKey key;
+    key.at = json.at("at").get<double>();
+    key.azimuth = json.at("azimuth").get<double>();
+    key.elevation = json.at("elevation").get<double>();
+    key.zoom = json.at("zoom").get<double>();
+    if (json.contains("eye")) key.eye = vector_of(json.at("eye"));
+    if (json.contains("target")) key.target = vector_of(json.at("target"));
+    return key;
+}
+
+}  // namespace
+
 Json passes_json(const std::vector<PicturePass>& passes) {
     Json names = Json::array();
     for (const PicturePass pass : passes) names.push_back(kPassName[std::size_t(pass)]);
@@ -21,15 +50,7 @@ std::optional<PicturePass> pass_named(const std::string& name) {
 
 Json render_json(const RenderSettings& settings) {
     Json camera = Json::array();
-    for (const CameraKey& key : settings.camera) {
-        Json one = {{"at", key.at},
-                    {"azimuth", key.azimuth},
-                    {"elevation", key.elevation},
-                    {"zoom", key.zoom}};
-        if (key.eye) one["eye"] = {(*key.eye)[0], (*key.eye)[1], (*key.eye)[2]};
-        if (key.target) one["target"] = {(*key.target)[0], (*key.target)[1], (*key.target)[2]};
-        camera.push_back(one);
-    }
+    for (const CameraKey& key : settings.camera) camera.push_back(camera_key_json(key));
     const FrameRate& rate = settings.frame_rate;
     Json json = {
         {"size", {settings.width, settings.height}},
@@ -104,21 +125,8 @@ RenderSettings render_settings_of(const Json& record) {
             settings.light.azimuth = json.at("light").at("azimuth").get<double>();
             settings.light.elevation = json.at("light").at("elevation").get<double>();
         }
-        const auto vector_of = [](const Json& three) {
-            return Vec3(three.at(0).get<double>(), three.at(1).get<double>(),
-                        three.at(2).get<double>());
-        };
         settings.camera.clear();
-        for (const Json& one : json.at("camera")) {
-            CameraKey key;
-            key.at = one.at("at").get<double>();
-            key.azimuth = one.at("azimuth").get<double>();
-            key.elevation = one.at("elevation").get<double>();
-            key.zoom = one.at("zoom").get<double>();
-            if (one.contains("eye")) key.eye = vector_of(one.at("eye"));
-            if (one.contains("target")) key.target = vector_of(one.at("target"));
-            settings.camera.push_back(key);
-        }
+        for (const Json& key : json.at("camera")) settings.camera.push_back(camera_key_of(key));
         for (const Json& angle : json.value("camera_auto", Json::array())) {
             settings.open.azimuth |= angle == "azimuth";
             settings.open.elevation |= angle == "elevation";

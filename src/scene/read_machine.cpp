@@ -227,34 +227,8 @@ class MachineReader {
         ToolSpec tool;
         ExpressionReader expression = read_repeat(table, tool.repeat);
         tool.name = read_name(table, tool.repeat);
-        for (const ParameterSpec& parameter : machine.parameter) {
-            for (const std::string& middle : middle_names(tool.name)) {
-                if (parameter.name != middle) continue;
-                table.mistake("name", fmt::format("\"{}\" is a parameter, and would also be the "
-                                                  "position of tool \"{}\"; choose another name",
-                                                  parameter.name, tool.name));
-            }
-        }
-        const bool has_shape = table.choice<ToolShape>("shape",
-                                                       {{"cylinder", ToolShape::cylinder},
-                                                        {"box", ToolShape::box},
-                                                        {"sphere", ToolShape::sphere},
-                                                        {"mesh", ToolShape::mesh}},
-                                                       tool.shape);
-        if (!has_shape) table.missing("shape", "\"cylinder\", \"box\", \"sphere\" or \"mesh\"");
-        const auto is = [&](ToolShape shape) { return tool.shape == shape; };
-        const bool is_round = is(ToolShape::cylinder) || is(ToolShape::sphere);
-        const bool is_long = is(ToolShape::cylinder) || is(ToolShape::mesh);
-        if (is_round) read_size(table, "radius", expression, tool.radius);
-        if (is_long) read_size(table, "length", expression, tool.length);
-        if (is(ToolShape::box)) {
-            if (!expression.read(table, "size", Quantity::length, tool.size)) {
-                table.missing("size", "three lengths along x, y and z");
-            }
-            expression.expect_positive(table, "size");
-            expression.read(table, "rounding", Quantity::length, tool.rounding);
-        }
-        if (is(ToolShape::mesh)) read_tool_mesh(table, tool.mesh, tool.mesh_place);
+        refuse_parameters_named_as(tool.name, table, machine);
+        read_shape(table, expression, tool);
         expression.read(table, "axis", Quantity::number, tool.axis);
         expression.expect_direction(table);
         expression.read(table, "turn", Quantity::angle, tool.turn);
@@ -275,7 +249,7 @@ class MachineReader {
             {{"metal", Finish::metal}, {"matt", Finish::matt}, {"endless", Finish::endless}},
             tool.finish);
         table.find("motion");
-        if (is(ToolShape::none)) table.leave_unknown();
+        if (tool.shape == ToolShape::none) table.leave_unknown();
         table.finish();
         expression_.take_used(expression);
         if (tool.repeat.is_open()) {
@@ -287,6 +261,41 @@ class MachineReader {
             expression_.add_names(middle_names(tool.name));
         }
         machine.tool.push_back(std::move(tool));
+    }
+
+    static void refuse_parameters_named_as(const std::string& tool, TableReader& table,
+                                           const MachineSpec& machine) {
+        for (const ParameterSpec& parameter : machine.parameter) {
+            for (const std::string& middle : middle_names(tool)) {
+                if (parameter.name != middle) continue;
+                table.mistake("name", fmt::format("\"{}\" is a parameter, and would also be the "
+                                                  "position of tool \"{}\"; choose another name",
+                                                  parameter.name, tool));
+            }
+        }
+    }
+
+    void read_shape(TableReader& table, ExpressionReader& expression, ToolSpec& tool) {
+        const bool has_shape = table.choice<ToolShape>("shape",
+                                                       {{"cylinder", ToolShape::cylinder},
+                                                        {"box", ToolShape::box},
+                                                        {"sphere", ToolShape::sphere},
+                                                        {"mesh", ToolShape::mesh}},
+                                                       tool.shape);
+        if (!has_shape) table.missing("shape", "\"cylinder\", \"box\", \"sphere\" or \"mesh\"");
+        const auto is = [&](ToolShape shape) { return tool.shape == shape; };
+        const bool is_round = is(ToolShape::cylinder) || is(ToolShape::sphere);
+        const bool is_long = is(ToolShape::cylinder) || is(ToolShape::mesh);
+        if (is_round) read_size(table, "radius", expression, tool.radius);
+        if (is_long) read_size(table, "length", expression, tool.length);
+        if (is(ToolShape::box)) {
+            if (!expression.read(table, "size", Quantity::length, tool.size)) {
+                table.missing("size", "three lengths along x, y and z");
+            }
+            expression.expect_positive(table, "size");
+            expression.read(table, "rounding", Quantity::length, tool.rounding);
+        }
+        if (is(ToolShape::mesh)) read_tool_mesh(table, tool.mesh, tool.mesh_place);
     }
 
     static std::vector<std::string> middle_names(const std::string& tool) {
