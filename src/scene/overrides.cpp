@@ -79,23 +79,22 @@ std::vector<Node*> descended(Node& table, const std::string& key, const std::str
     return {&entry->value};
 }
 
-void apply(const std::string& text, Node& root, MistakeList& mistakes) {
-    const auto source = std::make_shared<const Source>(Source{"--set " + text, text});
-    const Place place{source, 0, 0};
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) {
-        mistakes.add(place, "write an override as KEY=VALUE, such as stage.1.angle=45 deg");
-        return;
-    }
-    const std::vector<std::string> parts = parts_of(text.substr(0, equals));
+// SECTION.KEY in its parts; empty where it is none, which is told.
+std::vector<std::string> key_parts(const std::string& key, const Place& place,
+                                   MistakeList& mistakes) {
+    std::vector<std::string> parts = parts_of(key);
     const bool is_whole = std::none_of(parts.begin(), parts.end(),
                                        [](const std::string& part) { return part.empty(); });
-    if (!is_whole || parts.size() < 2) {
-        mistakes.add(
-            place,
-            "write the key of an override as SECTION.KEY, such as material.name or stage.1.angle");
-        return;
-    }
+    if (is_whole && parts.size() >= 2) return parts;
+    mistakes.add(
+        place,
+        "write the key of an override as SECTION.KEY, such as material.name or stage.1.angle");
+    return {};
+}
+
+// What the key's last part is to be set in; none where something else stands there, which is told.
+std::vector<Node*> sections_of(const std::vector<std::string>& parts, Node& root,
+                               const Place& place, MistakeList& mistakes) {
     std::vector<Node*> here = {&root};
     for (std::size_t n = 0; n + 1 < parts.size(); ++n) {
         std::vector<Node*> below;
@@ -111,25 +110,39 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
             if (node->kind == Node::Kind::table || node->kind == Node::Kind::array) continue;
             mistakes.add(place,
                          fmt::format("\"{}\" is {} and has no keys", parts[n], kind_text(*node)));
-            return;
+            return {};
         }
     }
+    return here;
+}
+
+std::string which_text(const std::string& of, const std::string& last) {
+    if (is_choice(last)) return fmt::format("which key of it? Write {}.{}.KEY", of, last);
+    return fmt::format("which {0}? Write {0}.1.{1}, or {0}.*.{1} for all", of, last);
+}
+
+void apply(const std::string& text, Node& root, MistakeList& mistakes) {
+    const auto source = std::make_shared<const Source>(Source{"--set " + text, text});
+    const Place place{source, 0, 0};
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+        mistakes.add(place, "write an override as KEY=VALUE, such as stage.1.angle=45 deg");
+        return;
+    }
+    const std::vector<std::string> parts = key_parts(text.substr(0, equals), place, mistakes);
+    if (parts.empty()) return;
+    const std::string& last = parts.back();
     const Node value = parse_value(text.substr(equals + 1), place);
-    for (Node* node : here) {
+    for (Node* node : sections_of(parts, root, place, mistakes)) {
         if (node->kind == Node::Kind::array) {
-            const std::string& of = parts[parts.size() - 2];
-            mistakes.add(place,
-                         is_choice(parts.back())
-                             ? fmt::format("which key of it? Write {}.{}.KEY", of, parts.back())
-                             : fmt::format("which {0}? Write {0}.1.{1}, or {0}.*.{1} for all", of,
-                                           parts.back()));
+            mistakes.add(place, which_text(parts[parts.size() - 2], last));
             return;
         }
-        if (Entry* entry = node->find(parts.back())) {
+        if (Entry* entry = node->find(last)) {
             entry->value = value;
             entry->place = place;
         } else {
-            node->entry.push_back({parts.back(), place, value});
+            node->entry.push_back({last, place, value});
         }
     }
 }
