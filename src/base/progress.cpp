@@ -22,7 +22,8 @@ double now_seconds() {
     return std::chrono::duration<double>(clock::now().time_since_epoch()).count();
 }
 
-std::string duration_text(double seconds) {
+// As a clock shows it: a bar has less room than seconds_text() takes.
+std::string clock_text(double seconds) {
     const int s = to_int(seconds + 0.5);
     if (s < 60) return fmt::format("{} s", s);
     return fmt::format("{}:{:02d}", s / 60, s % 60);
@@ -35,11 +36,11 @@ std::string time_left_text(int done, int left, double taken, double waited) {
     if (done > 0) {
         // What is at work is not done sooner than now.
         const double each = taken / done, next = left > 0 ? std::max(each - waited, 0.0) : 0;
-        text = duration_text(each * std::max(left - 1, 0) + next) + " left";
+        text = clock_text(each * std::max(left - 1, 0) + next) + " left";
     }
     if (waited < kLong) return text.empty() ? "begun" : text;
     return fmt::format("{}{}the next has taken {} so far", text, text.empty() ? "" : ", ",
-                       duration_text(waited));
+                       clock_text(waited));
 }
 
 Progress::Progress(std::string title, int total, int before)
