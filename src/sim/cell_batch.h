@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "laws/cell.h"
+#include "sim/force_slabs.h"
 
 namespace swage {
 
@@ -22,31 +23,41 @@ SWAGE_INLINE V load(const float* from) {
     return widened<V>(from);
 }
 
-// One vector field along the four particle rows of a run, by component: where its first cell's low
-// ends are.
-template <typename T>
+// A vector field along the four particle rows of a run, by component: where the low ends of a cell
+// are. They may be read up to `room` particles from there on.
 struct CornerRows {
-    T* at[3][4];
+    const double* at[3][4];
+    int room;
 };
+// From so many cells behind the run's first on.
+SWAGE_INLINE CornerRows corner_rows(const Vec3Array& field, const CellRun& run, int behind = 0) {
+    CornerRows rows;
+    for (int q = 0; q < 4; ++q) {
+        const ParticleId low = run.row[q] + behind;
+        rows.at[0][q] = field.x.data() + low;
+        rows.at[1][q] = field.y.data() + low;
+        rows.at[2][q] = field.z.data() + low;
+    }
+    rows.room = static_cast<int>(field.size()) - run.row[3] - behind;  // the last of the rows
+    return rows;
+}
 
-// Cells of a run from `begin` on; `count` of them are wanted, and the rows may be read up to `room`
-// particles behind their beginning.
+// Cells of a run from `begin` on, of which `count` are wanted.
 template <typename V>
-SWAGE_INLINE CornerSums<V> gather(const CornerRows<const double>& rows, int begin, int count,
-                                  int room) {
+SWAGE_INLINE CornerSums<V> gather(const CornerRows& rows, int begin, int count) {
     constexpr int kWidth = kWidthOf<V>;
-    CornerRows<const double> from;
+    const double* from[3][4];
     for (int i = 0; i < 3; ++i) {
-        for (int q = 0; q < 4; ++q) from.at[i][q] = rows.at[i][q] + begin;
+        for (int q = 0; q < 4; ++q) from[i][q] = rows.at[i][q] + begin;
     }
     double copy[3][4][kWidth + 1];
-    if (begin + kWidth + 1 > room) [[unlikely]] {
+    if (begin + kWidth + 1 > rows.room) [[unlikely]] {
         for (int i = 0; i < 3; ++i) {
             for (int q = 0; q < 4; ++q) {
                 for (int n = 0; n <= kWidth; ++n) {
-                    copy[i][q][n] = from.at[i][q][n <= count ? n : count];
+                    copy[i][q][n] = from[i][q][n <= count ? n : count];
                 }
-                from.at[i][q] = copy[i][q];
+                from[i][q] = copy[i][q];
             }
         }
     }
@@ -54,8 +65,8 @@ SWAGE_INLINE CornerSums<V> gather(const CornerRows<const double>& rows, int begi
     V corner[8];
     const auto component = [&](int i) __attribute__((always_inline)) {
         for (int q = 0; q < 4; ++q) {
-            corner[2 * q] = load<V>(from.at[i][q]);
-            corner[2 * q + 1] = load<V>(from.at[i][q] + 1);
+            corner[2 * q] = load<V>(from[i][q]);
+            corner[2 * q + 1] = load<V>(from[i][q] + 1);
         }
     };
     component(0);
@@ -67,6 +78,26 @@ SWAGE_INLINE CornerSums<V> gather(const CornerRows<const double>& rows, int begi
     return c;
 }
 
+// Where the forces on a run's corners go, likewise. `room`: particles from the beginning of each
+// row on that may be written over with what they are.
+struct CornerForces {
+    double* at[3][4];
+    int room[4];
+};
+SWAGE_INLINE CornerForces corner_forces(const RowSlab& slab, const ForceRows& to,
+                                        const CellRun& run) {
+    CornerForces rows;
+    for (int q = 0; q < 4; ++q) {
+        const ParticleId row = run.row[q];
+        const bool is_own = row < slab.end;
+        rows.room[q] = (is_own ? slab.end : slab.reach + kSeamRoom) - row;
+        for (int i = 0; i < 3; ++i) {
+            rows.at[i][q] = is_own ? to.own[i] + row : to.seam[i] + (row - slab.end);
+        }
+    }
+    return rows;
+}
+
 // Forces of the two ends of a cell's edges along x meet on the particles between: they are added
 // in registers, so that no particle is written twice in a row. What a batch leaves for the
 // particle behind its last cell is carried to the next.
@@ -75,10 +106,9 @@ struct ForceCarry {
     V high[3][4]{};
 };
 
-// `room`: particles behind the beginning of each row that may be written over with what they are.
 template <typename V>
-SWAGE_INLINE void add_forces(const CornerSums<V>& r, const CornerRows<double>& rows,
-                             const int (&room)[4], int begin, int count, ForceCarry<V>& carry) {
+SWAGE_INLINE void add_forces(const CornerSums<V>& r, const CornerForces& rows, int begin, int count,
+                             ForceCarry<V>& carry) {
     constexpr int kWidth = kWidthOf<V>;
     typename LaneBatch<kWidth>::Indices lane, shift;
     for (int l = 0; l < kWidth; ++l) lane[l] = l, shift[l] = l + kWidth - 1;
@@ -96,7 +126,7 @@ SWAGE_INLINE void add_forces(const CornerSums<V>& r, const CornerRows<double>& r
             } else {
                 // Also the particle behind the run's last cell.
                 const V sum = lane < count ? low + from_left : from_left;
-                if (begin + kWidth <= room[q]) {
+                if (begin + kWidth <= rows.room[q]) {
                     std::memcpy(&old, to, sizeof old);
                     old = lane <= count ? old + sum : old;
                     std::memcpy(to, &old, sizeof old);
@@ -116,7 +146,7 @@ SWAGE_INLINE void add_forces(const CornerSums<V>& r, const CornerRows<double>& r
 }
 // The particle behind the last cell of a run that ends with a whole batch.
 template <typename V>
-SWAGE_INLINE void add_carried(const CornerRows<double>& rows, int end, const ForceCarry<V>& carry) {
+SWAGE_INLINE void add_carried(const CornerForces& rows, int end, const ForceCarry<V>& carry) {
     for (int i = 0; i < 3; ++i) {
         for (int q = 0; q < 4; ++q) rows.at[i][q][end] += carry.high[i][q][kWidthOf<V> - 1];
     }

@@ -44,16 +44,8 @@ struct BookCells {
 template <typename V>
 SWAGE_INLINE BookCells<V> load_cells(const BookTask& task, int begin, int count) {
     const Aggregate& matter = *task.matter;
-    const Vec3Array& x = matter.particle_position;
-    const CellRun& run = *task.run;
-    CornerRows<const double> rows;
-    for (int q = 0; q < 4; ++q) {
-        rows.at[0][q] = x.x.data() + run.row[q];
-        rows.at[1][q] = x.y.data() + run.row[q];
-        rows.at[2][q] = x.z.data() + run.row[q];
-    }
     BookCells<V> r{};
-    r.sums = gather<V>(rows, begin, count, static_cast<int>(x.size()) - run.row[3]);
+    r.sums = gather<V>(corner_rows(matter.particle_position, *task.run), begin, count);
     const std::int32_t shares = task.batch[begin / kLanes];
     if (shares == kWholeCells) {
         r.fill = V{} + 1.0;
@@ -63,7 +55,7 @@ SWAGE_INLINE BookCells<V> load_cells(const BookTask& task, int begin, int count)
         r.at = {load<V>(from + kLanes), load<V>(from + 2 * kLanes), load<V>(from + 3 * kLanes)};
     }
     r.gradient = centroid_gradient(r.sums, r.at, matter.lattice.spacing);
-    const CellId first = run.first + begin;
+    const CellId first = task.run->first + begin;
     Columns<V> elastic = r.gradient;
     if (has_flowed(task.history, first - begin % kLanes)) {
         r.history = load_history<V>(task.history, first);

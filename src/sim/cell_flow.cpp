@@ -37,19 +37,12 @@ void strain_block(const double* x, const double* y, const double* z, const doubl
 SWAGE_VECTOR_CLONES
 double most_distorted(const Aggregate& matter, const CellRun& run) {
     constexpr double kTenth = 0.01;
-    const Vec3Array& x = matter.particle_position;
     const double a = matter.lattice.spacing, s = 0.25 / a;
-    CornerRows<const double> rows;
-    for (int q = 0; q < 4; ++q) {
-        rows.at[0][q] = x.x.data() + run.row[q];
-        rows.at[1][q] = x.y.data() + run.row[q];
-        rows.at[2][q] = x.z.data() + run.row[q];
-    }
-    const int room = static_cast<int>(x.size()) - run.row[3];
+    const CornerRows rows = corner_rows(matter.particle_position, run);
     double most = 0;
     for (int begin = 0; begin < run.count; begin += kFewLanes) {
         const int count = std::min(kFewLanes, run.count - begin);
-        const CornerSums<FewLanes> c = gather<FewLanes>(rows, begin, count, room);
+        const CornerSums<FewLanes> c = gather<FewLanes>(rows, begin, count);
         const FewLanes j = (s * s * s) * dot(c.x, cross(c.y, c.z)) - 1.0, third = (1.0 / 3) * j;
         FewLanes edges{}, diagonals{}, squares = j * j;
         const auto add = [&](const Triple<FewLanes>& way, double scale, FewLanes& sum)

@@ -33,10 +33,10 @@ struct SlabTask {
     const CellRun *run = nullptr, *run_end = nullptr;
     const std::int32_t* batch = nullptr;  // of the first run
     const float* share;
-    int particles;
-    const double* position[3];
+    const Vec3Array* position;
+    const RowSlab* slab = nullptr;
     ForceRows to{};
-    ParticleId zeroed = 0, end = 0, reach = 0;  // the slab's forces are zero up to `zeroed`
+    ParticleId zeroed = 0;  // the slab's forces are zero up to here
     HistoryRows history;
     std::vector<const CellRun*>*crushed_run = nullptr, *strained_run = nullptr,
                       *yielding_run = nullptr;
@@ -61,23 +61,14 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
     typename LaneBatch<kWidth>::Indices lane;
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
     const std::int32_t* batch = task.batch;
+    const ParticleId slab_end = task.slab->end;
     for (const CellRun* run = task.run; run != task.run_end; ++run) {
-        const ParticleId reach = std::min(task.end, run->row[3] + run->count + 1);
+        const ParticleId reach = std::min(slab_end, run->row[3] + run->count + 1);
         if (reach > task.zeroed) {
-            task.zero_up_to(std::min(task.end, std::max(reach, task.zeroed + kZeroAhead)));
+            task.zero_up_to(std::min(slab_end, std::max(reach, task.zeroed + kZeroAhead)));
         }
-        CornerRows<const double> x;
-        CornerRows<double> force;
-        int room[4];
-        for (int q = 0; q < 4; ++q) {
-            const ParticleId row = run->row[q];
-            const bool own = row < task.end;
-            room[q] = (own ? task.end : task.reach + kSeamRoom) - row;
-            for (int i = 0; i < 3; ++i) {
-                x.at[i][q] = task.position[i] + row;
-                force.at[i][q] = own ? task.to.own[i] + row : task.to.seam[i] + (row - task.end);
-            }
-        }
+        const CornerRows x = corner_rows(*task.position, *run);
+        const CornerForces force = corner_forces(*task.slab, task.to, *run);
         ForceCarry<V> carry;
         V smallest = V{} + task.crushed, strained{};
         V most_over = V{} - task.constants->law.yield_stress;
@@ -85,7 +76,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
         for (int begin = 0; begin < run->count; begin += kWidth) {
             const std::int32_t shares = batch[begin / kLanes];
             const int left = run->count - begin, count = left < kWidth ? left : kWidth;
-            const CornerSums<V> c = gather<V>(x, begin, count, task.particles - run->row[3]);
+            const CornerSums<V> c = gather<V>(x, begin, count);
             Columns<V> d = {c.x, c.y, c.z};
             if (shares != kWholeCells) d = centroid_sums(c, share_of<V>(task, shares, begin).at);
             V size = dot(d.x, cross(d.y, d.z));
@@ -133,7 +124,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
                 if (count < kWidth) over = lane < count ? over : most_over;
                 most_over = larger(most_over, over);
             }
-            add_forces(r, force, room, begin, count, carry);
+            add_forces(r, force, begin, count, carry);
         }
         if (run->count % kWidth == 0) add_carried(force, run->count, carry);
         bool crushed = false, yields = false, strains = any_flowed;
@@ -236,19 +227,17 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
         if (is_plain && law.kind == CellKind::yielding) law.kind = CellKind::elastic;
         constants.emplace_back(law.moduli);
     }
-    const Vec3Array& x = matter.particle_position;
-    force.resize(x.size());
+    force.resize(matter.particle_count());
     SlabTask whole{.strained = strain_measure_at(onset_),
                    .share = share_.data(),
-                   .particles = static_cast<int>(x.size()),
-                   .position = {x.x.data(), x.y.data(), x.z.data()},
+                   .position = &matter.particle_position,
                    .history = HistoryRows(matter)};
     parallel_for(slab_.size(), [&](std::size_t index) {
         RowSlab& slab = slab_[index];
         SlabTask task = whole;
         task.to = force_rows(slab, force);
         task.batch = batch_.data() + slab_batch_[index];
-        task.zeroed = slab.begin, task.end = slab.end, task.reach = slab.reach;
+        task.slab = &slab, task.zeroed = slab.begin;
         for (SlabRuns* runs : {&crushed_, &strained_, &yielding_}) (*runs)[index].clear();
         task.crushed_run = &crushed_[index], task.strained_run = &strained_[index];
         task.yielding_run = &yielding_[index];

@@ -19,8 +19,7 @@ constexpr std::size_t kThreadRuns = 8;  // rows of cells that a thread is worth 
 
 // Where the arrays of a run begin.
 struct RunView {
-    CornerRows<const double> x{};
-    int room = 0;   // particles from the run's last row on
+    CornerRows x{};
     int count = 0;  // cells of the run
     CellId first = 0;
     const char* whole = nullptr;  // of each batch of kLanes cells
@@ -109,9 +108,8 @@ SWAGE_INLINE CornerSums<V> tangent_forces(const Task& task, int begin, const Cor
 }
 
 struct ProductTask : Task {
-    CornerRows<const double> direction;
-    CornerRows<double> result{};
-    int room[4]{};  // in each row of the result
+    CornerRows direction;
+    CornerForces result;
 };
 // Tangents in terms of their coarse cells' corners, upper triangles by columns.
 struct MatrixTask : Task {
@@ -139,10 +137,9 @@ SWAGE_INLINE void act(const ProductTask& task) {
     ForceCarry<V> carry;
     for (int begin = 0; begin < run.count; begin += kWidth) {
         const int count = std::min(kWidth, run.count - begin);
-        const CornerSums<V> x = gather<V>(run.x, begin, count, run.room);
-        const CornerSums<V> way = gather<V>(task.direction, begin, count, run.room);
-        add_forces(tangent_forces<kKind>(task, begin, x, way), task.result, task.room, begin, count,
-                   carry);
+        const CornerSums<V> x = gather<V>(run.x, begin, count);
+        const CornerSums<V> way = gather<V>(task.direction, begin, count);
+        add_forces(tangent_forces<kKind>(task, begin, x, way), task.result, begin, count, carry);
     }
     if (run.count % kWidth == 0) add_carried(task.result, run.count, carry);
 }
@@ -152,7 +149,7 @@ template <int kWidth, typename See>
 SWAGE_INLINE void for_parts(const RunView& run, int batch, const See& see) {
     for (int first = 0; first < std::min(kLanes, run.count - batch); first += kWidth) {
         const int begin = batch + first, count = std::min(kWidth, run.count - begin);
-        see(first, begin, gather<LanesOf<kWidth>>(run.x, begin, count, run.room));
+        see(first, begin, gather<LanesOf<kWidth>>(run.x, begin, count));
     }
 }
 
@@ -265,20 +262,10 @@ std::vector<CellTangent::Law> CellTangent::laws_for(const Aggregate& matter, Flo
 
 namespace {
 
-CornerRows<const double> rows_of(const Vec3Array& v, const CellRun& run) {
-    CornerRows<const double> rows;
-    const std::vector<double>* component[3] = {&v.x, &v.y, &v.z};
-    for (int i = 0; i < 3; ++i) {
-        for (int q = 0; q < 4; ++q) rows.at[i][q] = component[i]->data() + run.row[q];
-    }
-    return rows;
-}
-
 RunView view_of(const Aggregate& matter, const CellRun& run, const std::vector<float>& fill,
                 const std::array<std::vector<float>, 3>& at, const char* whole) {
     RunView view{.history = HistoryRows(matter)};
-    view.x = rows_of(matter.particle_position, run);
-    view.room = static_cast<int>(matter.particle_count()) - run.row[3];
+    view.x = corner_rows(matter.particle_position, run);
     view.count = run.count;
     view.first = run.first;
     view.whole = whole;
@@ -304,16 +291,9 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
             const CellRun& run = all[r];
             const Law& law = laws[matter.material_number(run.first)];
             const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
-            ProductTask task{{law.constants, view, kind.geometric}, rows_of(direction, run)};
-            for (int q = 0; q < 4; ++q) {
-                const ParticleId row = run.row[q];
-                const bool is_own = row < slab.end;
-                task.room[q] = (is_own ? slab.end : slab.reach + kSeamRoom) - row;
-                for (int i = 0; i < 3; ++i) {
-                    task.result.at[i][q] = is_own ? to.own[i] + row : to.seam[i] + (row - slab.end);
-                }
-            }
-            do_task(law.kind, task);
+            do_task(law.kind, ProductTask{{law.constants, view, kind.geometric},
+                                          corner_rows(direction, run),
+                                          corner_forces(slab, to, run)});
         }
     });
     add_seams(slab_, result);

@@ -16,31 +16,16 @@ namespace {
 constexpr std::size_t kRunsPerChunk = 64;
 constexpr std::size_t kCellsPerChunk = 4096;  // about; fewer take less than handing over
 
-CornerRows<const double> rows_of(const Aggregate& matter, const CellRun& run, int at) {
-    const Vec3Array& x = matter.particle_position;
-    CornerRows<const double> rows;
-    for (int q = 0; q < 4; ++q) {
-        rows.at[0][q] = x.x.data() + run.row[q] + at;
-        rows.at[1][q] = x.y.data() + run.row[q] + at;
-        rows.at[2][q] = x.z.data() + run.row[q] + at;
-    }
-    return rows;
-}
-// Particles that may be read behind the beginnings of its rows.
-int room_of(const Aggregate& matter, const CellRun& run, int at) {
-    return static_cast<int>(matter.particle_count()) - run.row[3] - at;
-}
-
 // 64 a^3 times the volume ratios of a batch of cells, at their middles.
 template <typename V>
-SWAGE_INLINE V batch_volumes(const CornerRows<const double>& rows, int begin, int count, int room) {
-    const CornerSums<V> c = gather<V>(rows, begin, count, room);
+SWAGE_INLINE V batch_volumes(const CornerRows& rows, int begin, int count) {
+    const CornerSums<V> c = gather<V>(rows, begin, count);
     return dot(c.x, cross(c.y, c.z));
 }
 
 struct VolumeTask {
-    CornerRows<const double> rows;
-    int count, room;
+    CornerRows rows;
+    int count;
     double scale;
     double* volume;  // in whole vectors
 };
@@ -49,7 +34,7 @@ SWAGE_INLINE void find_volumes(const VolumeTask& task) {
     typedef LanesOf<kWidth> V;
     for (int begin = 0; begin < task.count; begin += kWidth) {
         const int count = std::min(kWidth, task.count - begin);
-        const V volume = task.scale * batch_volumes<V>(task.rows, begin, count, task.room);
+        const V volume = task.scale * batch_volumes<V>(task.rows, begin, count);
         std::memcpy(task.volume + begin, &volume, sizeof volume);
     }
 }
@@ -67,13 +52,12 @@ SWAGE_INLINE void find_small_runs(const SmallRunsTask& task) {
     typename LaneBatch<kWidth>::Indices lane;
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
     for (const CellRun* run = task.run; run != task.run_end; ++run) {
-        const CornerRows<const double> rows = rows_of(task.matter, *run, 0);
-        const int room = room_of(task.matter, *run, 0);
+        const CornerRows rows = corner_rows(task.matter.particle_position, *run);
         const V enough = V{} + task.limit;
         V smallest = enough;
         for (int begin = 0; begin < run->count; begin += kWidth) {
             const int count = std::min(kWidth, run->count - begin);
-            const V volume = batch_volumes<V>(rows, begin, count, room);
+            const V volume = batch_volumes<V>(rows, begin, count);
             smallest = lane < count && volume < smallest ? volume : smallest;
         }
         bool small = false;
@@ -134,7 +118,7 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
 
 void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count, double* volume) {
     const double spacing = matter.lattice.spacing;
-    const VolumeTask task{rows_of(matter, run, at), count, room_of(matter, run, at),
+    const VolumeTask task{corner_rows(matter.particle_position, run, at), count,
                           1 / (64 * spacing * spacing * spacing), volume};
     by_width([&]<int kWidth>() __attribute__((always_inline)) { find_volumes<kWidth>(task); });
 }

@@ -84,20 +84,12 @@ std::vector<CellId> not_in_line(std::vector<Candidate> cells) {
 // Of the cells of a run.
 SWAGE_VECTOR_CLONES
 void strain_measures(const Aggregate& matter, const CellRun& run, std::vector<double>& measure) {
-    const Vec3Array& x = matter.particle_position;
     const double a = matter.lattice.spacing, gram = 1 / (16 * a * a);
-    CornerRows<const double> rows;
-    for (int q = 0; q < 4; ++q) {
-        rows.at[0][q] = x.x.data() + run.row[q];
-        rows.at[1][q] = x.y.data() + run.row[q];
-        rows.at[2][q] = x.z.data() + run.row[q];
-    }
+    const CornerRows rows = corner_rows(matter.particle_position, run);
     measure.resize(static_cast<std::size_t>(run.count + kFewLanes));
-    const int room = static_cast<int>(x.size()) - run.row[3];
     for (int begin = 0; begin < run.count; begin += kFewLanes) {
         const int count = std::min(kFewLanes, run.count - begin);
-        const FewLanes m =
-            strain_measure(gather<FewLanes>(rows, begin, count, room), gram, kAnywhere);
+        const FewLanes m = strain_measure(gather<FewLanes>(rows, begin, count), gram, kAnywhere);
         std::memcpy(measure.data() + begin, &m, sizeof m);
     }
 }
