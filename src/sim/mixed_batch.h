@@ -2,8 +2,12 @@
 // How cells of two materials are read, several at a time or alone.
 #pragma once
 
+#include <algorithm>
+#include <span>
+
 #include "laws/laminate.h"
 #include "matter/aggregate.h"
+#include "sim/mixed_cells.h"
 
 namespace swage {
 
@@ -36,5 +40,50 @@ SWAGE_INLINE void read_mixed(const Vec3Array& x, const MixedCell& cell,
         for (int n = 0; n < kCellHistory; ++n) set_lane(*number[n], lane, cell.flowed[p][n]);
     }
 }
+
+// The cells of one batch, which are of the same two materials.
+struct MixedBatch {
+    const Aggregate& matter;
+    std::span<const int> cell;  // into mixed_cell
+    const std::array<ParticleId, 8>* corner;
+    const MaterialLaw* law[2];
+
+    int count() const { return static_cast<int>(cell.size()); }
+};
+inline MixedBatch mixed_batch(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                              const MixedBatches& all, std::size_t n) {
+    const std::size_t begin = all.first[n], count = all.first[n + 1] - begin;
+    const auto& [one, other] = matter.mixed_cell[all.cell[begin]].material;
+    return {matter,
+            std::span(all.cell).subspan(begin, count),
+            &all.corner[begin],
+            {&laws[one], &laws[other]}};
+}
+
+// So many of its cells from one on, as their law sees them.
+template <int kWidth>
+struct MixedLanes {
+    typedef LanesOf<kWidth> V;
+    CornerSums<V> sums;
+    Phase<V> phase[2]{};
+    Triple<V> normal{};
+
+    SWAGE_INLINE MixedLanes(const MixedBatch& batch, int begin) {
+        V at[3][8]{};
+        for (int p = 0; p < 2; ++p) {
+            phase[p].law = &batch.law[p]->moduli, phase[p].kind = batch.law[p]->kind;
+        }
+        for (int l = 0; l < kWidth; ++l) {
+            const int n = cell_of(batch, begin, l);
+            read_mixed(batch.matter.particle_position, batch.matter.mixed_cell[batch.cell[n]],
+                       batch.corner[n], l, at, phase, normal);
+        }
+        sums = sum_corners(at);
+    }
+    // Lanes that are left over repeat the last cell.
+    static int cell_of(const MixedBatch& batch, int begin, int lane) {
+        return std::min(begin + lane, batch.count() - 1);
+    }
+};
 
 }  // namespace swage

@@ -20,17 +20,6 @@ namespace {
 constexpr std::size_t kBatchesPerChunk = 8, kCellsPerChunk = 64;
 constexpr double kNearYield = 1e-6;  // of the yield stress: lanes round otherwise
 
-// What a batch of cells is read from, and where its forces on the corners go: component, corner.
-struct MixedBatch {
-    const Aggregate* matter;
-    const MixedCell* cell[kLanes];
-    const std::array<ParticleId, 8>* corner[kLanes];
-    const MaterialLaw* law[2];
-    std::array<double, 24>* push;
-    MixedCells::Seen* seen;
-    int count;
-};
-
 // The search for a jump begins where the last forces found it, and anew where they did not.
 template <typename V>
 SWAGE_INLINE void set_guess(JumpGuess<V>& guess, int lane, const MixedCells::Seen& seen) {
@@ -52,38 +41,30 @@ SWAGE_INLINE void set_seen(const Laminate<V>& found, int lane, MixedCells::Seen&
                     y.z[lane], z.x[lane], z.y[lane], z.z[lane]};
 }
 
-// Eight cells, as so many batches of the machine's own width.
+// Eight cells, as so many batches of the machine's own width. `push`: on their corners, by
+// component and corner.
 template <int kWidth>
-SWAGE_INLINE void batch_forces(const MixedBatch& b) {
+SWAGE_INLINE void batch_forces(const MixedBatch& batch, std::array<double, 24>* push,
+                               MixedCells::Seen* seen) {
     typedef LanesOf<kWidth> V;
-    for (int begin = 0; begin < b.count; begin += kWidth) {
-        V at[3][8]{};
-        Phase<V> phase[2]{};
-        Triple<V> normal{};
+    const double spacing = batch.matter.lattice.spacing;
+    for (int begin = 0; begin < batch.count(); begin += kWidth) {
+        const MixedLanes<kWidth> cells(batch, begin);
         JumpGuess<V> guess{};
-        for (int p = 0; p < 2; ++p)
-            phase[p].law = &b.law[p]->moduli, phase[p].kind = b.law[p]->kind;
-        for (int l = 0; l < kWidth; ++l) {
-            // Lanes that are left over repeat the last cell.
-            const int n = std::min(begin + l, b.count - 1);
-            read_mixed(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
-            set_guess(guess, l, b.seen[n]);
-        }
-        const double spacing = b.matter->lattice.spacing;
-        const CornerSums<V> c = sum_corners(at);
+        for (int l = 0; l < kWidth; ++l) set_guess(guess, l, seen[cells.cell_of(batch, begin, l)]);
         Laminate<V> found;
-        laminate(c, phase, normal, spacing, found, guess);
-        const CornerSums<V> r = laminate_forces(c, phase, found, spacing);
-        spread_corners(r, at);
-        for (int l = 0; l < kWidth && begin + l < b.count; ++l) {
-            for (int n = 0; n < 24; ++n) b.push[begin + l][n] = at[n / 8][n % 8][l];
-            MixedCells::Seen& seen = b.seen[begin + l];
-            seen.may_flow = false;
-            set_seen(found, l, seen);
+        laminate(cells.sums, cells.phase, cells.normal, spacing, found, guess);
+        V force[3][8];
+        spread_corners(laminate_forces(cells.sums, cells.phase, found, spacing), force);
+        for (int l = 0; l < kWidth && begin + l < batch.count(); ++l) {
+            for (int n = 0; n < 24; ++n) push[begin + l][n] = force[n / 8][n % 8][l];
+            MixedCells::Seen& own = seen[begin + l];
+            own.may_flow = false;
+            set_seen(found, l, own);
             for (int p = 0; p < 2; ++p) {
-                const double near = -kNearYield * phase[p].law->yield_stress;
-                seen.may_flow = seen.may_flow || (phase[p].kind == CellKind::yielding &&
-                                                  found.phase[p].flowed.over[l] > near);
+                const double near = -kNearYield * cells.phase[p].law->yield_stress;
+                own.may_flow = own.may_flow || (cells.phase[p].kind == CellKind::yielding &&
+                                                found.phase[p].flowed.over[l] > near);
             }
         }
     }
@@ -185,17 +166,11 @@ void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialL
                             Vec3Array& force) {
     if (batches_.cell.empty()) return;
     parallel_each(batches_.count(), kBatchesPerChunk, [&](std::size_t b) {
-        MixedBatch batch{};
-        batch.matter = &matter;
-        batch.count = batches_.first[b + 1] - batches_.first[b];
-        for (int n = 0; n < batch.count; ++n) {
-            batch.cell[n] = &matter.mixed_cell[batches_.cell[batches_.first[b] + n]];
-            batch.corner[n] = &batches_.corner[batches_.first[b] + n];
-        }
-        for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
-        batch.push = &push_[batches_.first[b]];
-        batch.seen = &seen_[batches_.first[b]];
-        by_width([&]<int kWidth>() __attribute__((always_inline)) { batch_forces<kWidth>(batch); });
+        const MixedBatch batch = mixed_batch(matter, laws, batches_, b);
+        const int first = batches_.first[b];
+        by_width([&]<int kWidth>() __attribute__((always_inline)) {
+            batch_forces<kWidth>(batch, &push_[first], &seen_[first]);
+        });
     });
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         for (int c = 0; c < 8; ++c) {

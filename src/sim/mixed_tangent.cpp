@@ -13,55 +13,32 @@ namespace {
 
 constexpr std::size_t kCellsPerChunk = 64;
 
-struct TangentBatch {
-    const Aggregate* matter;
-    const MixedCell* cell[kLanes];
-    const std::array<ParticleId, 8>* corner[kLanes];
-    const MaterialLaw* law[2];
-    double turning;
-    CellMatrix* to;
-    int count;
-};
-
 // Of so many of its cells, from this one on.
 template <int kWidth>
-SWAGE_INLINE void some_matrices(const TangentBatch& b, int first) {
+SWAGE_INLINE void some_matrices(const MixedBatch& batch, double turning, int begin,
+                                CellMatrix* matrix) {
     typedef LanesOf<kWidth> V;
-    V at[3][8]{};
-    Phase<V> phase[2]{};
-    Triple<V> normal{};
-    for (int p = 0; p < 2; ++p) {
-        phase[p].law = &b.law[p]->moduli, phase[p].kind = b.law[p]->kind;
-    }
-    for (int l = 0; l < kWidth; ++l) {
-        const int n = std::min(first + l, b.count - 1);
-        read_mixed(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
-    }
-    const double spacing = b.matter->lattice.spacing;
-    const CornerSums<V> c = sum_corners(at);
+    const MixedLanes<kWidth> cells(batch, begin);
+    const auto& [c, phase, normal] = cells;
+    const double spacing = batch.matter.lattice.spacing;
     Laminate<V> found;
     laminate(c, phase, normal, spacing, found);
-    const Columns<V> inverse = inverse_of(jump_slope(phase, normal, found, b.turning));
+    const Columns<V> inverse = inverse_of(jump_slope(phase, normal, found, turning));
     for (int column = 0; column < CellMatrix::kSize; ++column) {
         V alone[3][8]{};
         alone[column % 3][column / 3] += 1.0;
         const CornerSums<V> r = laminate_slope(c, sum_corners(alone), phase, normal, spacing,
-                                               found.jump, inverse, b.turning);
+                                               found.jump, inverse, turning);
         V force[3][8];
         spread_corners(r, force);
         for (int row = 0; row <= column; ++row) {
             const V& f = force[row % 3][row / 3];
-            for (int l = 0; l < std::min(kWidth, b.count - first); ++l) {
-                b.to[first + l].upper[static_cast<std::size_t>(CellMatrix::place(row, column))] =
-                    -f[l];
+            const auto place = static_cast<std::size_t>(CellMatrix::place(row, column));
+            for (int l = 0; l < std::min(kWidth, batch.count() - begin); ++l) {
+                matrix[begin + l].upper[place] = -f[l];
             }
         }
     }
-}
-
-template <int kWidth>
-SWAGE_INLINE void all_matrices(const TangentBatch& b) {
-    for (int first = 0; first < b.count; first += kWidth) some_matrices<kWidth>(b, first);
 }
 
 }  // namespace
@@ -81,17 +58,13 @@ const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
     known_.push_back({kind, std::vector<CellMatrix>(batches_.cell.size())});
     std::vector<CellMatrix>& matrix = known_.back().matrix;
     parallel_for(batches_.count(), [&](std::size_t b) {
-        TangentBatch batch{};
-        batch.matter = &matter;
-        batch.turning = kind.geometric;
-        batch.count = batches_.first[b + 1] - batches_.first[b];
-        for (int n = 0; n < batch.count; ++n) {
-            batch.cell[n] = &matter.mixed_cell[batches_.cell[batches_.first[b] + n]];
-            batch.corner[n] = &batches_.corner[batches_.first[b] + n];
-        }
-        for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
-        batch.to = matrix.data() + batches_.first[b];
-        by_width([&]<int kWidth>() __attribute__((always_inline)) { all_matrices<kWidth>(batch); });
+        const MixedBatch batch = mixed_batch(matter, laws, batches_, b);
+        CellMatrix* const to = &matrix[batches_.first[b]];
+        by_width([&]<int kWidth>() __attribute__((always_inline)) {
+            for (int begin = 0; begin < batch.count(); begin += kWidth) {
+                some_matrices<kWidth>(batch, kind.geometric, begin, to);
+            }
+        });
     });
     return matrix;
 }
