@@ -78,32 +78,12 @@ SWAGE_INLINE CornerSums<V> minus_slopes(const Task& task, int begin, const Corne
 
 // It is long: one copy of a kind and a width serves all tasks.
 template <CellKind kKind, typename V>
-[[gnu::noinline]] SWAGE_WIDE_VECTORS void wide_slopes(const Task& task, int begin,
-                                                      const CornerSums<V>& x,
-                                                      const CornerSums<V>& way,
-                                                      CornerSums<V>& result) {
-    result = minus_slopes<kKind>(task, begin, x, way);
-}
-template <CellKind kKind, typename V>
-[[gnu::noinline]] SWAGE_MIDDLE_VECTORS void middle_slopes(const Task& task, int begin,
-                                                          const CornerSums<V>& x,
-                                                          const CornerSums<V>& way,
-                                                          CornerSums<V>& result) {
-    result = minus_slopes<kKind>(task, begin, x, way);
-}
-template <CellKind kKind, typename V>
-[[gnu::noinline]] void narrow_slopes(const Task& task, int begin, const CornerSums<V>& x,
-                                     const CornerSums<V>& way, CornerSums<V>& result) {
-    result = minus_slopes<kKind>(task, begin, x, way);
-}
-template <CellKind kKind, typename V>
 SWAGE_INLINE CornerSums<V> tangent_forces(const Task& task, int begin, const CornerSums<V>& x,
                                           const CornerSums<V>& way) {
-    constexpr int kWidth = sizeof(V) / sizeof(double);
     CornerSums<V> result;
-    if constexpr (kWidth == 8) wide_slopes<kKind>(task, begin, x, way, result);
-    if constexpr (kWidth == 4) middle_slopes<kKind>(task, begin, x, way, result);
-    if constexpr (kWidth == 2) narrow_slopes<kKind>(task, begin, x, way, result);
+    in_width<kWidthOf<V>>([&]() __attribute__((always_inline)) {
+        result = minus_slopes<kKind>(task, begin, x, way);
+    });
     return result;
 }
 

@@ -20,34 +20,44 @@ void limit_vector_width(int width);
 
 // Kernels in functions that are built for one width: what they do has to be inlined all the way.
 template <typename Kernel>
-SWAGE_WIDE_VECTORS void in_wide(const Kernel& kernel) {
-    kernel.template operator()<8>();
-}
-template <typename Kernel>
-SWAGE_MIDDLE_VECTORS void in_middle(const Kernel& kernel) {
-    kernel.template operator()<4>();
-}
-template <typename Kernel>
-void in_narrow(const Kernel& kernel) {
-    kernel.template operator()<2>();
-}
-// Does a kernel of any width by that of this machine:
-// by_width([&]<int kWidth>() __attribute__((always_inline)) { ... })
-template <typename Kernel>
-void by_width(const Kernel& kernel) {
-    const int width = vector_width();
-    width == 8 ? in_wide(kernel) : width == 4 ? in_middle(kernel) : in_narrow(kernel);
-}
-
-// The same of one that is of four numbers everywhere:
-// by_fours([&]() __attribute__((always_inline)) { ... })
-template <typename Kernel>
-SWAGE_MIDDLE_VECTORS void in_fours(const Kernel& kernel) {
+[[gnu::noinline]] SWAGE_WIDE_VECTORS void in_wide(const Kernel& kernel) {
     kernel();
 }
 template <typename Kernel>
+[[gnu::noinline]] SWAGE_MIDDLE_VECTORS void in_middle(const Kernel& kernel) {
+    kernel();
+}
+template <typename Kernel>
+[[gnu::noinline]] void in_narrow(const Kernel& kernel) {
+    kernel();
+}
+// Does one of the width that is named, in a copy that all who come this way share:
+// in_width<kWidth>([&]() __attribute__((always_inline)) { ... })
+template <int kWidth, typename Kernel>
+SWAGE_INLINE void in_width(const Kernel& kernel) {
+    if constexpr (kWidth == 8) in_wide(kernel);
+    if constexpr (kWidth == 4) in_middle(kernel);
+    if constexpr (kWidth == 2) in_narrow(kernel);
+}
+// Does one of any width by that of this machine:
+// by_width([&]<int kWidth>() __attribute__((always_inline)) { ... })
+template <typename Kernel>
+void by_width(const Kernel& kernel) {
+    const auto in = [&]<int kWidth>() {
+        in_width<kWidth>([&]() __attribute__((always_inline)) {
+            kernel.template operator()<kWidth>();
+        });
+    };
+    const int width = vector_width();
+    width == 8   ? in.template operator()<8>()
+    : width == 4 ? in.template operator()<4>()
+                 : in.template operator()<2>();
+}
+// Does one that is of four numbers everywhere:
+// by_fours([&]() __attribute__((always_inline)) { ... })
+template <typename Kernel>
 void by_fours(const Kernel& kernel) {
-    vector_width() >= 4 ? in_fours(kernel) : kernel();
+    vector_width() >= 4 ? in_middle(kernel) : in_narrow(kernel);
 }
 
 }  // namespace swage
