@@ -57,8 +57,6 @@
 // bending and torsion on coarse lattices.
 #pragma once
 
-#include <array>
-
 #include "laws/cell_return.h"
 
 namespace swage {
@@ -339,23 +337,23 @@ struct CellHistory {
     CellModes<N> modes;    // p [m]
     N alpha;
 };
-// Where its numbers are, in the order in which they are kept.
-template <typename History>
-SWAGE_INLINE auto numbers_of(History& history) {
-    auto& [e, q, alpha] = history;
-    return std::array{&e.xx,   &e.yy,    &e.zz,    &e.xy,    &e.yz,   &e.zx,   &q.xy.x,
-                      &q.xy.y, &q.xy.z,  &q.yz.x,  &q.yz.y,  &q.yz.z, &q.zx.x, &q.zx.y,
-                      &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z, &alpha};
-}
-// Of the numbers at(n) in that order.
-template <typename N, typename At>
-SWAGE_INLINE CellHistory<N> history_from(const At& at) {
-    const auto triple = [&](int n) __attribute__((always_inline)) {
-        return Triple<N>{at(n), at(n + 1), at(n + 2)};
+// Calls see(n, number) for all numbers of a strain and its modes, in the order in which they are
+// kept.
+template <typename Strain, typename Modes, typename See>
+SWAGE_INLINE void for_each_number(Strain& e, Modes& q, const See& see) {
+    int n = 0;
+    const auto each = [&](auto&... number) __attribute__((always_inline)) {
+        (see(n++, number), ...);
     };
-    return {{at(0), at(1), at(2), at(3), at(4), at(5)},
-            {triple(6), triple(9), triple(12), triple(15)},
-            at(18)};
+    each(e.xx, e.yy, e.zz, e.xy, e.yz, e.zx);
+    const auto triple = [&](auto& v) __attribute__((always_inline)) { each(v.x, v.y, v.z); };
+    triple(q.xy), triple(q.yz), triple(q.zx), triple(q.xyz);
+}
+// Of a history: as these, and alpha last.
+template <typename History, typename See>
+SWAGE_INLINE void for_each_number(History& history, const See& see) {
+    for_each_number(history.stretch, history.modes, see);
+    see(18, history.alpha);
 }
 template <typename N>  // A
 SWAGE_INLINE Symmetric<N> taken_back(const CellHistory<N>& history) {

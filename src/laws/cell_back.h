@@ -33,6 +33,8 @@
 // increment's energy M. Ortiz & L. Stainier, Comput. Methods Appl. Mech. Eng. 171, 1999.
 #pragma once
 
+#include <array>
+
 #include "laws/cell.h"
 #include "laws/dual.h"
 #include "laws/lane_power.h"
@@ -44,20 +46,9 @@ struct BackStrain {
     Symmetric<N> strain;  // B
     CellModes<N> modes;   // beta [m]
 };
-// Where its numbers are, in the order in which they are kept.
-template <typename Back>
-SWAGE_INLINE auto numbers_of_back(Back& back) {
-    auto& [e, q] = back;
-    return std::array{&e.xx,   &e.yy,   &e.zz,   &e.xy,    &e.yz,    &e.zx,
-                      &q.xy.x, &q.xy.y, &q.xy.z, &q.yz.x,  &q.yz.y,  &q.yz.z,
-                      &q.zx.x, &q.zx.y, &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z};
-}
 template <typename N>
 SWAGE_INLINE BackStrain<Dual<N>> constant(const BackStrain<N>& v) {
-    const Symmetric<N>& e = v.strain;
-    return {{constant(e.xx), constant(e.yy), constant(e.zz), constant(e.xy), constant(e.yz),
-             constant(e.zx)},
-            constant(v.modes)};
+    return {constant(v.strain), constant(v.modes)};
 }
 
 // A number without its slope, and back.

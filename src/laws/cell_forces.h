@@ -18,6 +18,23 @@ enum class CellKind {
     foam
 };
 
+// Calls act.operator()<kKind>() for a kind that is known only now.
+template <typename Act>
+void by_kind(CellKind kind, const Act& act) {
+    switch (kind) {
+        case CellKind::elastic:
+            return act.template operator()<CellKind::elastic>();
+        case CellKind::yielding:
+            return act.template operator()<CellKind::yielding>();
+        case CellKind::kinematic:
+            return act.template operator()<CellKind::kinematic>();
+        case CellKind::rubber:
+            return act.template operator()<CellKind::rubber>();
+        case CellKind::foam:
+            return act.template operator()<CellKind::foam>();
+    }
+}
+
 inline constexpr bool can_flow(CellKind kind) {
     return kind == CellKind::yielding || kind == CellKind::kinematic;
 }
@@ -79,6 +96,17 @@ SWAGE_INLINE CornerSums<N> spread_stress(const CornerSums<N>& c, const Columns<N
     CornerSums<N> r{p.x, p.y, p.z, d * g.xy, d * g.yz, d * g.zx, d * g.xyz};
     if constexpr (kPart) add_levers(p, share.at, r);
     return r;
+}
+
+// What cell_forces() is built for: act.operator()<kPart, kFlowed>().
+template <typename Act>
+SWAGE_INLINE auto by_share(bool is_part, bool has_flowed, const Act& act) {
+    if (is_part) {
+        return has_flowed ? act.template operator()<true, true>()
+                          : act.template operator()<true, false>();
+    }
+    return has_flowed ? act.template operator()<false, true>()
+                      : act.template operator()<false, false>();
 }
 
 // Forces on the sums of the corners. kPart: the cell is partly filled; kFlowed: it has a history.

@@ -100,12 +100,13 @@ SWAGE_INLINE CellModes<Dual<N>> constant(const CellModes<N>& v) {
     return {constant(v.xy), constant(v.yz), constant(v.zx), constant(v.xyz)};
 }
 template <typename N>
+SWAGE_INLINE Symmetric<Dual<N>> constant(const Symmetric<N>& v) {
+    return {constant(v.xx), constant(v.yy), constant(v.zz),
+            constant(v.xy), constant(v.yz), constant(v.zx)};
+}
+template <typename N>
 SWAGE_INLINE CellHistory<Dual<N>> constant(const CellHistory<N>& v) {
-    const Symmetric<N>& e = v.stretch;
-    return {{constant(e.xx), constant(e.yy), constant(e.zz), constant(e.xy), constant(e.yz),
-             constant(e.zx)},
-            constant(v.modes),
-            constant(v.alpha)};
+    return {constant(v.stretch), constant(v.modes), constant(v.alpha)};
 }
 
 // With a slope.

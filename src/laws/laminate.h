@@ -106,7 +106,7 @@ SWAGE_INLINE bool all_less(double a, double b) { return a < b; }
 template <LaneVector V>
 SWAGE_INLINE bool all_less(const V& a, const V& b) {
     bool all = true;
-    for (std::size_t l = 0; l < sizeof(V) / sizeof(double); ++l) all = all && a[l] < b[l];
+    for (int l = 0; l < kWidthOf<V>; ++l) all = all && a[l] < b[l];
     return all;
 }
 

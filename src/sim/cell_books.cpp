@@ -162,18 +162,19 @@ SWAGE_INLINE void add_flow(BookTask& task) {
         if constexpr (kShifts) {
             const BackGrown<V> grown = flowed_on(c.history, back, r, c.gradient, c.sums);
             after = grown.history;
-            const auto number = numbers_of_back(grown.back);
-            for (int n = 0; n < kCellBack; ++n) {
-                keep(*number[n], flows, count, task.flows->cell_back.row[n].data() + first);
-            }
+            for_each_number(
+                grown.back.strain,
+                grown.back.modes, [&](int n, const V& number) __attribute__((always_inline)) {
+                    keep(number, flows, count, task.flows->cell_back.row[n].data() + first);
+                });
         } else {
             after = flowed_on(c.history, r, c.gradient, c.sums);
         }
         if (task.growths) add_growths(task, begin, count, c, after, flows);
-        const auto number = numbers_of(after);
-        for (int n = 0; n < kCellHistory; ++n) {
-            keep(*number[n], flows, count, task.flows->cell_history.row[n].data() + first);
-        }
+        for_each_number(
+            after, [&](int n, const V& number) __attribute__((always_inline)) {
+                keep(number, flows, count, task.flows->cell_history.row[n].data() + first);
+            });
     }
 }
 

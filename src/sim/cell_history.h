@@ -68,8 +68,11 @@ struct BatchRows {
 template <typename V>
 SWAGE_INLINE CellHistory<V> load_history(const HistoryRows& rows, CellId cell) {
     const BatchRows<V, kCellHistory> batch(rows.row, rows.cells, cell);
-    return history_from<V>([&](int n)
-                               __attribute__((always_inline)) { return load<V>(batch.from[n]); });
+    CellHistory<V> history;
+    for_each_number(
+        history, [&](int n, V& number)
+                     __attribute__((always_inline)) { number = load<V>(batch.from[n]); });
+    return history;
 }
 // Zero while none has a back stress.
 template <typename V>
@@ -77,8 +80,10 @@ SWAGE_INLINE BackStrain<V> load_back(const HistoryRows& rows, CellId cell) {
     BackStrain<V> back{};
     if (rows.back[0] == nullptr) return back;
     const BatchRows<V, kCellBack> batch(rows.back, rows.cells, cell);
-    const auto number = numbers_of_back(back);
-    for (int n = 0; n < kCellBack; ++n) *number[n] = load<V>(batch.from[n]);
+    for_each_number(
+        back.strain, back.modes, [&](int n, V& number) __attribute__((always_inline)) {
+            number = load<V>(batch.from[n]);
+        });
     return back;
 }
 

@@ -93,33 +93,21 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
                 flowed = has_flowed(task.history, cell);
                 any_flowed = any_flowed || flowed;
             }
-            CornerSums<V> r;
             V over = most_over;
-            BackStrain<V> back;
-            if constexpr (kKind == CellKind::kinematic) {
-                if (flowed) back = load_back<V>(task.history, cell);
-            }
-            if (shares == kWholeCells) {
-                const CellShare<V> whole{};
-                if (flowed) {
-                    r = cell_forces<kKind, false, true>(*task.constants, c, whole,
-                                                        load_history<V>(task.history, cell), 1,
-                                                        &over, &back);
-                } else {
-                    r = cell_forces<kKind, false, false>(*task.constants, c, whole,
-                                                         CellHistory<V>{}, 1, &over);
-                }
-            } else {
-                const CellShare<V> part = share_of<V>(task, shares, begin);
-                if (flowed) {
-                    r = cell_forces<kKind, true, true>(*task.constants, c, part,
-                                                       load_history<V>(task.history, cell), 1,
-                                                       &over, &back);
-                } else {
-                    r = cell_forces<kKind, true, false>(*task.constants, c, part, CellHistory<V>{},
-                                                        1, &over);
-                }
-            }
+            const CornerSums<V> r = by_share(
+                shares != kWholeCells,
+                flowed, [&]<bool kPart, bool kFlowed>() __attribute__((always_inline)) {
+                    CellShare<V> share{};
+                    CellHistory<V> history{};
+                    BackStrain<V> back;
+                    if constexpr (kPart) share = share_of<V>(task, shares, begin);
+                    if constexpr (kFlowed) history = load_history<V>(task.history, cell);
+                    if constexpr (kFlowed && kKind == CellKind::kinematic) {
+                        back = load_back<V>(task.history, cell);
+                    }
+                    return cell_forces<kKind, kPart, kFlowed>(*task.constants, c, share, history, 1,
+                                                              &over, &back);
+                });
             if constexpr (can_flow(kKind)) {
                 if (count < kWidth) over = lane < count ? over : most_over;
                 most_over = larger(most_over, over);
@@ -147,16 +135,10 @@ void slab_of(SlabTask& task) {
     by_width([&]<int kWidth>()
                  __attribute__((always_inline)) { slab_forces<kWidth, kKind, kWatched>(task); });
 }
-template <bool kWatched>
-void slab_by_kind(CellKind kind, SlabTask& task) {
-    kind == CellKind::rubber      ? slab_of<CellKind::rubber, kWatched>(task)
-    : kind == CellKind::foam      ? slab_of<CellKind::foam, kWatched>(task)
-    : kind == CellKind::yielding  ? slab_of<CellKind::yielding, kWatched>(task)
-    : kind == CellKind::kinematic ? slab_of<CellKind::kinematic, kWatched>(task)
-                                  : slab_of<CellKind::elastic, kWatched>(task);
-}
 void sweep_slab(CellKind kind, SlabTask& task) {
-    task.strained > 0 ? slab_by_kind<true>(kind, task) : slab_by_kind<false>(kind, task);
+    by_kind(kind, [&]<CellKind kKind>() {
+        task.strained > 0 ? slab_of<kKind, true>(task) : slab_of<kKind, false>(task);
+    });
 }
 
 template <typename Act>

@@ -40,38 +40,33 @@ SWAGE_INLINE Triple<V> minus_slope(const Triple<Dual<V>>& a) {
     return {-a.x.slope, -a.y.slope, -a.z.slope};
 }
 
-template <typename V>
-SWAGE_INLINE CellHistory<Dual<V>> history_of(const RunView& run, int begin) {
-    return constant(load_history<V>(run.history, run.first + begin));
-}
-
 // Minus the change of the cells' forces on their corners' sums.
 template <CellKind kKind, typename V>
 SWAGE_INLINE CornerSums<V> minus_slopes(const Task& task, int begin, const CornerSums<V>& x,
                                         const CornerSums<V>& way) {
-    const auto& [constants, run, turning] = task;
+    const RunView& run = task.run;
     using N = Dual<V>;
     const CornerSums<N> c = pair(x, way);
-    CornerSums<N> r;
-    const bool flowed = can_flow(kKind) && run.history.hardening() != nullptr;
-    BackStrain<N> back;
-    if constexpr (kKind == CellKind::kinematic) {
-        if (flowed) back = constant(load_back<V>(run.history, run.first + begin));
-    }
-    if (run.whole[begin / kLanes]) {
-        const CellShare<N> all{};
-        r = flowed ? cell_forces<kKind, false, true>(constants, c, all, history_of<V>(run, begin),
-                                                     turning, nullptr, &back)
-                   : cell_forces<kKind, false, false>(constants, c, all, CellHistory<N>{}, turning);
-    } else {
-        const CellShare<N> part{
-            constant(load<V>(run.fill + begin)),
-            {constant(load<V>(run.at[0] + begin)), constant(load<V>(run.at[1] + begin)),
-             constant(load<V>(run.at[2] + begin))}};
-        r = flowed ? cell_forces<kKind, true, true>(constants, c, part, history_of<V>(run, begin),
-                                                    turning, nullptr, &back)
-                   : cell_forces<kKind, true, false>(constants, c, part, CellHistory<N>{}, turning);
-    }
+    const CellId first = run.first + begin;
+    const CornerSums<N> r = by_share(
+        !run.whole[begin / kLanes], can_flow(kKind) && run.history.hardening() != nullptr,
+        [&]<bool kPart, bool kFlowed>() __attribute__((always_inline)) {
+            CellShare<N> share{};
+            CellHistory<N> history{};
+            BackStrain<N> back;
+            if constexpr (kPart) {
+                share.fill = constant(load<V>(run.fill + begin));
+                share.at = {constant(load<V>(run.at[0] + begin)),
+                            constant(load<V>(run.at[1] + begin)),
+                            constant(load<V>(run.at[2] + begin))};
+            }
+            if constexpr (kFlowed) history = constant(load_history<V>(run.history, first));
+            if constexpr (kFlowed && kKind == CellKind::kinematic) {
+                back = constant(load_back<V>(run.history, first));
+            }
+            return cell_forces<kKind, kPart, kFlowed>(task.constants, c, share, history,
+                                                      task.turning, nullptr, &back);
+        });
     return {minus_slope(r.x),  minus_slope(r.y),  minus_slope(r.z),  minus_slope(r.xy),
             minus_slope(r.yz), minus_slope(r.zx), minus_slope(r.xyz)};
 }
@@ -192,17 +187,11 @@ SWAGE_INLINE void act(const MatrixTask& task) {
         });
 }
 
-template <CellKind kKind, typename T>
-void do_kind(const T& task) {
-    by_width([&]<int kWidth>() __attribute__((always_inline)) { act<kKind, kWidth>(task); });
-}
 template <typename T>
 void do_task(CellKind kind, const T& task) {
-    kind == CellKind::rubber      ? do_kind<CellKind::rubber>(task)
-    : kind == CellKind::foam      ? do_kind<CellKind::foam>(task)
-    : kind == CellKind::yielding  ? do_kind<CellKind::yielding>(task)
-    : kind == CellKind::kinematic ? do_kind<CellKind::kinematic>(task)
-                                  : do_kind<CellKind::elastic>(task);
+    by_kind(kind, [&]<CellKind kKind>() {
+        by_width([&]<int kWidth>() __attribute__((always_inline)) { act<kKind, kWidth>(task); });
+    });
 }
 
 }  // namespace

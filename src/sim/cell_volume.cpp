@@ -151,15 +151,17 @@ Triple<double> material_place(const Aggregate& matter, CellId cell) {
 }
 
 CellHistory<double> committed_history(const Aggregate& matter, CellId cell) {
-    if (matter.cell_history.empty()) return {};
-    return history_from<double>([&](int n) { return double(matter.cell_history.row[n][cell]); });
+    CellHistory<double> history{};
+    if (matter.cell_history.empty()) return history;
+    for_each_number(history, [&](int n, double& to) { to = matter.cell_history.row[n][cell]; });
+    return history;
 }
 
 BackStrain<double> committed_back(const Aggregate& matter, CellId cell) {
     BackStrain<double> back{};
     if (matter.cell_back.empty()) return back;
-    const auto number = numbers_of_back(back);
-    for (int n = 0; n < kCellBack; ++n) *number[n] = matter.cell_back.row[n][cell];
+    for_each_number(back.strain, back.modes,
+                    [&](int n, double& to) { to = matter.cell_back.row[n][cell]; });
     return back;
 }
 

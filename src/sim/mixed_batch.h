@@ -36,8 +36,10 @@ SWAGE_INLINE void read_mixed(const Vec3Array& x, const MixedCell& cell,
         set_lane(m.at.x, lane, 2 * cell.centroid[p].x());
         set_lane(m.at.y, lane, 2 * cell.centroid[p].y());
         set_lane(m.at.z, lane, 2 * cell.centroid[p].z());
-        const auto number = numbers_of(m.history);
-        for (int n = 0; n < kCellHistory; ++n) set_lane(*number[n], lane, cell.flowed[p][n]);
+        for_each_number(
+            m.history, [&](int n, N& number) __attribute__((always_inline)) {
+                set_lane(number, lane, cell.flowed[p][n]);
+            });
     }
 }
 

@@ -197,8 +197,9 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
                     mean_flow_stress(law, one.phase[p].history.alpha, r.d_alpha);
             const CellHistory<double> after =
                 flowed_on(one.phase[p].history, r, one.found.phase[p].gradient, one.sums);
-            const auto now = numbers_of(after);
-            for (int s = 0; s < kCellHistory; ++s) cell.flowed[p][s] = static_cast<float>(*now[s]);
+            for_each_number(after, [&](int s, const double& now) {
+                cell.flowed[p][s] = static_cast<float>(now);
+            });
         }
         if (growths == nullptr) continue;
         const SlotLengths is = rest_lengths(matter, cell.cell, &cell);

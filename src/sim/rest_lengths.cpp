@@ -21,8 +21,9 @@ double square_along(const Vec3& n, const Symmetric<double>& c) {
 }
 
 Symmetric<double> metric_of(const MixedCell& mixed, int part) {
-    const auto& kept = mixed.flowed[static_cast<std::size_t>(part)];
-    return flowed_metric(history_from<double>([&](int n) { return double(kept[n]); }).stretch);
+    CellHistory<double> history;
+    for_each_number(history, [&](int n, double& to) { to = mixed.flowed[std::size_t(part)][n]; });
+    return flowed_metric(history.stretch);
 }
 
 double mixed_ratio(const Aggregate& matter, const MixedCell& mixed,
