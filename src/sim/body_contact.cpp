@@ -163,13 +163,9 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
         if (acts[b]) side_[b].patch().read(*force[b]);
     }
     std::vector<ContactWay::Held> held(way_.size());
-    if (thread_count() == 1) {
-        for (std::size_t w : awake) held[w] = way_[w].find_and_press(step);
-    } else {
-        parallel_for(awake.size(), candidates() / kThreadShare,
-                     [&](std::size_t n) { way_[awake[n]].find(step); });
-        for (std::size_t w : awake) held[w] = way_[w].press();
-    }
+    const std::size_t threads = candidates() / kThreadShare;
+    parallel_for(awake.size(), threads, [&](std::size_t n) { way_[awake[n]].find(step); });
+    for (std::size_t w : awake) held[w] = way_[w].press();
     for (std::size_t w : awake) {
         const ContactWay::Held& own = held[w];
         if (pair_[w].back == w) {
@@ -183,13 +179,9 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().find_springs();
     }
-    if (thread_count() == 1) {
-        for (std::size_t w : awake) way_[w].respond_and_answer(step, again);
-    } else {
-        parallel_for(awake.size(), candidates() / kThreadShare,
-                     [&](std::size_t n) { way_[awake[n]].respond(step, again); });
-        for (std::size_t w : awake) way_[w].answer();
-    }
+    parallel_for(awake.size(), threads,
+                 [&](std::size_t n) { way_[awake[n]].respond(step, again); });
+    for (std::size_t w : awake) way_[w].answer();
     // NOTE: what friction lets go of may be any part of what a way holds, however short the step,
     // and the shares that both have then are others. With those from before it counted as less that
     // is kept, and more that friction took; the next step found energy that came from nowhere.

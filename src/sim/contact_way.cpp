@@ -188,18 +188,6 @@ void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {
         patch.force(low + int(n)) += share * force[n].value;
 }
 
-void ContactWay::begin_meeting() {
-    meeting_.resize(list_.size());
-    if (is_own()) {
-        own_spot_.resize(list_.size());
-        own_held_.resize(list_.size());
-    }
-    chunk_.resize(chunks_of(list_.size(), kChunk));
-    for (Pushed* pushed : {&point_push_, &cell_push_}) {
-        pushed->force.assign(std::size_t(pushed->high - pushed->low + 1), {});
-    }
-}
-
 void ContactWay::find_met() {
     met_.clear();
     const bool is_met =
@@ -217,8 +205,8 @@ void ContactWay::find_met() {
     }
 }
 
-void ContactWay::press_chunk(std::size_t chunk, Held& held) {
-    for (int n : chunk_[chunk].moved) {
+void ContactWay::take_moved(const Chunk& chunk) {
+    for (int n : chunk.moved) {
         Contact& contact = list_.contact[n];
         const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
         for (int c = 0; c < 8; ++c) {
@@ -227,30 +215,30 @@ void ContactWay::press_chunk(std::size_t chunk, Held& held) {
             cell_push_.take(slot);
         }
     }
-    if (is_own()) return;
-    push_chunk(chunk);
-    held.now += chunk_[chunk].held.now;
-    held.gone += chunk_[chunk].held.gone;
-    held.turned += chunk_[chunk].held.turned;
 }
 
 void ContactWay::find(double step) {
-    begin_meeting();
+    meeting_.resize(list_.size());
+    if (is_own()) {
+        own_spot_.resize(list_.size());
+        own_held_.resize(list_.size());
+    }
+    chunk_.resize(chunks_of(list_.size(), kChunk));
+    for (Pushed* pushed : {&point_push_, &cell_push_}) {
+        pushed->force.assign(std::size_t(pushed->high - pushed->low + 1), {});
+    }
     parallel_for(chunk_.size(), [&](std::size_t chunk) { find_chunk(chunk, step); });
 }
 
 ContactWay::Held ContactWay::press() {
     Held held{.gone = std::exchange(gone_, 0)};
-    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) press_chunk(chunk, held);
-    return held;
-}
-
-ContactWay::Held ContactWay::find_and_press(double step) {
-    begin_meeting();
-    Held held{.gone = std::exchange(gone_, 0)};
     for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
-        find_chunk(chunk, step);
-        press_chunk(chunk, held);
+        take_moved(chunk_[chunk]);
+        if (is_own()) continue;
+        push_chunk(chunk);
+        held.now += chunk_[chunk].held.now;
+        held.gone += chunk_[chunk].held.gone;
+        held.turned += chunk_[chunk].held.turned;
     }
     return held;
 }
@@ -292,35 +280,18 @@ void ContactWay::keep_own() {
     keep_more(own_.kept_more());
 }
 
-void ContactWay::begin_response(bool again) {
+void ContactWay::respond(double step, bool again) {
     next_.resize(list_.size());
     // What a blade has cut is counted as gone once.
     for (std::size_t n = 0; again && n < list_.size(); ++n) {
         if (!meeting_[n].is_known()) list_.memory[n] = {};
     }
     find_met();
-}
-
-void ContactWay::respond(double step, bool again) {
-    begin_response(again);
     parallel_for(chunk_.size(), [&](std::size_t chunk) { respond_chunk(chunk, step, again); });
 }
 
 void ContactWay::answer() {
     for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) answer_chunk(chunk);
-    sum_response();
-}
-
-void ContactWay::respond_and_answer(double step, bool again) {
-    begin_response(again);
-    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
-        respond_chunk(chunk, step, again);
-        answer_chunk(chunk);
-    }
-    sum_response();
-}
-
-void ContactWay::sum_response() {
     sums_ = {};
     sums_.damped = 0.5 * broken_;
     sums_.friction = 0.5 * turned_;

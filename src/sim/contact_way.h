@@ -68,8 +68,6 @@ class ContactWay {
     // asks.
     using Held = ContactHeld;
     Held press();
-    // Both, for one thread: what it has just found is pressed while it is near.
-    Held find_and_press(double step);
     // Adds this share of it. Half of what both ways hold less for what is gone, and for what the
     // surface turned away from [J].
     void push(double share, double gone, double turned);
@@ -79,8 +77,6 @@ class ContactWay {
     void respond(double step, bool again);
     // Adds what they do.
     void answer();
-    // Both, for one thread.
-    void respond_and_answer(double step, bool again);
     // What its springs would hold alone, now that friction has let go of some of it [J].
     double kept() const { return kept_; }
     // What friction has let go of is less by this [J].
@@ -201,15 +197,12 @@ class ContactWay {
                 contact.site.cast<double>() + contact.place};
     }
     void share_own();
-    void begin_meeting();
-    void press_chunk(std::size_t chunk, Held& held);
     void find_chunk(std::size_t chunk, double step);
+    void take_moved(const Chunk& chunk);
     void find_met();
     void push_chunk(std::size_t chunk);
-    void begin_response(bool again);
     void respond_chunk(std::size_t chunk, double step, bool again);
     void answer_chunk(std::size_t chunk);
-    void sum_response();
 
     ContactSide *from_, *onto_;
     Solver solver_;
