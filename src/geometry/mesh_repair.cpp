@@ -3,7 +3,6 @@
 #include "geometry/mesh_repair.h"
 
 #include <algorithm>
-#include <map>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -12,6 +11,7 @@
 #include "geometry/mesh_bodies.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
+#include "geometry/mesh_holes.h"
 #include "geometry/mesh_repair_cgal.h"
 #include "geometry/mesh_shells.h"
 #include "geometry/mesh_stitch.h"
@@ -19,15 +19,6 @@
 namespace swage {
 
 namespace {
-
-constexpr double kMostFilled =
-    0.4;  // of a shell's area after filling, to count as a body with holes
-constexpr double kMostLeftOut = 0.25;  // of all area, in open sheets
-
-double area_of(const TriMesh& mesh, std::size_t t) {
-    const Corners& c = mesh.triangle[t];
-    return 0.5 * area_vector(mesh.position, c).norm();
-}
 
 struct EdgeCount {
     std::size_t odd = 0;         // edges with an odd number of triangles
@@ -277,128 +268,19 @@ class Repairer {
                             counted(all_turned, "triangle", "triangles")));
     }
 
-    // Border edges of each shell, as outlines that run around the holes.
-    std::vector<std::vector<EdgeUse>> outlines() const {
-        std::vector<EdgeUse> border;
-        for_each_edge(edge_uses(mesh_.triangle, mesh_.position.size()), [&](auto uses) {
-            if (uses.size() == 1) border.push_back(uses[0]);
-        });
-        // A hole's outline runs against the triangles beside it.
-        const auto start = [](const EdgeUse& e) { return e.forward ? e.high : e.low; };
-        const auto goal = [](const EdgeUse& e) { return e.forward ? e.low : e.high; };
-        std::multimap<int, EdgeUse> leaving;
-        for (const EdgeUse& e : border) leaving.emplace(start(e), e);
-        std::vector<std::vector<EdgeUse>> loops;
-        while (!leaving.empty()) {
-            std::vector<EdgeUse> path;
-            std::map<int, std::size_t> visited;  // position: its place in the path
-            for (int at = leaving.begin()->first;;) {
-                const auto next = leaving.find(at);
-                if (next == leaving.end()) break;  // no loop: the border does not close
-                visited[at] = path.size();
-                path.push_back(next->second);
-                leaving.erase(next);
-                at = goal(path.back());
-                const auto seen = visited.find(at);
-                if (seen == visited.end()) continue;
-                const auto from = path.begin() + static_cast<std::ptrdiff_t>(seen->second);
-                loops.emplace_back(from, path.end());
-                for (auto e = from; e != path.end(); ++e) visited.erase(start(*e));
-                path.erase(from, path.end());
-                if (path.empty()) break;
-            }
-        }
-        return loops;
-    }
-
     void close_holes() {
-        const std::vector<int> shell = shells_of(mesh_);
-        const int shell_count =
-            shell.empty() ? 0 : *std::max_element(shell.begin(), shell.end()) + 1;
-        std::vector<double> area(shell_count, 0), filled(shell_count, 0);
-        std::vector<std::size_t> triangles(shell_count, 0);
-        double all_area = 0;
-        for (std::size_t t = 0; t < shell.size(); ++t) {
-            area[shell[t]] += area_of(mesh_, t);
-            ++triangles[shell[t]];
-        }
-        for (const double a : area) all_area += a;
-        struct Filling {
-            int shell;
-            std::vector<int> place;
-            std::vector<Corners> triangle;
-            std::size_t like;
-        };
-        std::vector<Filling> fillings;
-        for (const auto& loop : outlines()) {
-            Filling filling;
-            filling.shell = shell[loop[0].triangle];
-            filling.like = static_cast<std::size_t>(loop[0].triangle);
-            std::vector<Vec3> point;
-            for (const EdgeUse& e : loop) {
-                filling.place.push_back(e.forward ? e.high : e.low);
-                point.push_back(mesh_.position[filling.place.back()]);
-            }
-            filling.triangle = fill_outline(point);
-            for (const Corners& c : filling.triangle)
-                filled[filling.shell] += 0.5 * area_vector(point, c).norm();
-            fillings.push_back(std::move(filling));
-        }
-        // A sheet is what would be closed by little less than its own area once more.
-        std::vector<char> is_sheet(shell_count, 0);
-        double sheet_area = 0, worst = 0;
-        std::size_t sheets = 0, sheet_triangles = 0;
-        for (int s = 0; s < shell_count; ++s) {
-            const double share = filled[s] > 0 ? filled[s] / (area[s] + filled[s]) : 0;
-            if (share <= kMostFilled) continue;
-            is_sheet[s] = 1;
-            ++sheets;
-            sheet_triangles += triangles[s];
-            sheet_area += area[s];
-            worst = std::max(worst, share);
-        }
-        if (sheet_area > kMostLeftOut * all_area)
-            fail(
-                ExitCode::mesh,
-                "an open sheet encloses no volume: closing it would invent {:.0f} % of its "
-                "surface; give it thickness first (in Blender: the Solidify modifier), or close it",
-                100 * worst);
-        std::size_t holes = 0, hole_edges = 0, hole_triangles = 0, failed = 0;
-        double hole_area = 0;
-        for (const Filling& f : fillings) {
-            if (is_sheet[f.shell]) continue;
-            if (f.triangle.empty()) {
-                ++failed;
-                continue;
-            }
-            const int group = mesh_.smooth_group_count;
-            if (!mesh_.triangle_smooth.empty())
-                mesh_.smooth_group_count += static_cast<int>(f.place.size());
-            for (const Corners& c : f.triangle) {
-                add_triangle(mesh_, {f.place[c[0]], f.place[c[1]], f.place[c[2]]}, f.like,
-                             {group + c[0], group + c[1], group + c[2]});
-            }
-            ++holes;
-            hole_edges += f.place.size();
-            hole_triangles += f.triangle.size();
-        }
-        for (int s = 0; s < shell_count; ++s)
-            if (!is_sheet[s]) hole_area += filled[s];
-        if (holes > 0)
+        const HolesClosed done = swage::close_holes(mesh_);
+        if (done.holes > 0)
             say(fmt::format("closed {}, {} edges in total, with {}, {:.2g} % of the surface",
-                            counted(holes, "hole", "holes"), hole_edges,
-                            counted(hole_triangles, "triangle", "triangles"),
-                            100 * hole_area / (all_area + hole_area)));
-        if (failed > 0)
-            say(fmt::format("{} could not be closed", counted(failed, "hole", "holes")));
-        if (sheets == 0) return;
-        std::vector<char> keep(mesh_.triangle.size(), 1);
-        for (std::size_t t = 0; t < shell.size(); ++t) keep[t] = !is_sheet[shell[t]];
-        keep_triangles(mesh_, keep);
-        say(fmt::format("left out {} of {}, {:.2g} % of the surface: they enclose nothing",
-                        counted(sheets, "open sheet", "open sheets"),
-                        counted(sheet_triangles, "triangle", "triangles"),
-                        100 * sheet_area / all_area));
+                            counted(done.holes, "hole", "holes"), done.edges,
+                            counted(done.triangles, "triangle", "triangles"), 100 * done.share));
+        if (done.failed > 0)
+            say(fmt::format("{} could not be closed", counted(done.failed, "hole", "holes")));
+        if (done.sheets > 0)
+            say(fmt::format("left out {} of {}, {:.2g} % of the surface: they enclose nothing",
+                            counted(done.sheets, "open sheet", "open sheets"),
+                            counted(done.sheet_triangles, "triangle", "triangles"),
+                            100 * done.sheet_share));
     }
 
     void wrap(const std::string& reason) {
