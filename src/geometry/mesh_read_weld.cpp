@@ -247,62 +247,99 @@ std::vector<int> renumbered(std::vector<int> polygon) {
     return polygon;
 }
 
+// The vertices that faces use, strays would spoil the box; and the places that they lie at.
+struct Places {
+    std::vector<int> vertex;     // in the file's order
+    std::vector<int> of_vertex;  // the place of each of these
+    std::vector<Vec3> position;  // of each place
+};
+
+Places places_of(const RawMesh& raw) {
+    std::vector<char> used(raw.position.size(), 0);
+    for (const Corners& t : raw.triangle)
+        for (const int i : t) used[i] = 1;
+    Places places;
+    std::vector<std::array<double, 3>> key;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) continue;
+        places.vertex.push_back(static_cast<int>(i));
+        const Vec3& p = raw.position[i];
+        key.push_back({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0});  // -0 becomes 0
+    }
+    int count = 0;
+    places.of_vertex = number_equal(key, count);
+    places.position.resize(count);
+    for (std::size_t i = 0; i < key.size(); ++i) {
+        places.position[places.of_vertex[i]] = {key[i][0], key[i][1], key[i][2]};
+    }
+    return places;
+}
+
+// The colour of each place: of its first vertex, where surfaces with and without colours meet of
+// the first that has them. Where no colour of a place can be right for all, colours become
+// materials if they can, and none is left.
+std::vector<Eigen::Vector3f> colors_of(const Places& places, const std::vector<char>& takes,
+                                       RawMesh& raw) {
+    std::vector<char> counts(raw.position.size(), raw.triangle_material.empty());
+    for (std::size_t t = 0; t < raw.triangle_material.size(); ++t)
+        if (takes[raw.triangle_material[t]])
+            for (const int i : raw.triangle[t]) counts[i] = 1;
+    const std::size_t count = places.position.size();
+    std::vector<int> first(count, -1);
+    std::vector<char> differs(count, 0), jumps(count, 0);
+    for (const bool counting : {true, false})
+        for (std::size_t i = 0; i < places.vertex.size(); ++i) {
+            const int vertex = places.vertex[i], place = places.of_vertex[i];
+            if (counts[vertex] != counting) continue;
+            int& known = first[place];
+            if (known < 0) known = vertex;
+            differs[place] |= raw.color[known] != raw.color[vertex];
+            if (counting) jumps[place] = differs[place];
+        }
+    if (std::count(differs.begin(), differs.end(), 1) > 0 && paint_by_faces(raw)) return {};
+    if (const auto changed = std::count(jumps.begin(), jumps.end(), 1); changed > 0)
+        raw.finding.push_back(fmt::format(
+            "at {} of {} vertices the colours of adjacent faces differ: one of them was taken",
+            changed, count));
+    std::vector<Eigen::Vector3f> color;
+    for (const int i : first) color.push_back(raw.color[i]);
+    return color;
+}
+
+SurfaceMaterial surface_material(RawMaterial& raw, bool takes_colors) {
+    SurfaceMaterial material;
+    material.takes_colors = takes_colors;
+    material.name = std::move(raw.name);
+    material.color = raw.color;
+    material.roughness = raw.roughness;
+    material.metallic = raw.metallic;
+    material.texture = std::move(raw.texture);
+    if (!raw.texture_bytes.empty())
+        material.embedded_texture =
+            std::make_shared<const std::string>(std::move(raw.texture_bytes));
+    return material;
+}
+
 }  // namespace
 
 TriMesh weld(RawMesh& raw, double crease_angle) {
     TriMesh mesh;
-    // Only vertices that faces use, in the file's order: strays would spoil the box.
-    std::vector<char> used(raw.position.size(), 0);
-    for (const Corners& t : raw.triangle)
-        for (const int i : t) used[i] = 1;
-    std::vector<int> kept;
-    std::vector<std::array<double, 3>> key;
-    for (std::size_t i = 0; i < used.size(); ++i)
-        if (used[i]) {
-            kept.push_back(static_cast<int>(i));
-            const Vec3& p = raw.position[i];
-            key.push_back({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0});  // -0 becomes 0
-        }
-    if (const std::size_t strays = used.size() - kept.size(); strays > 0)
-        raw.finding.push_back(fmt::format("{} of {} vertices belong to no face and were left out",
-                                          strays, used.size()));
-    int count = 0;
-    const std::vector<int> number = number_equal(key, count);
-    std::vector<int> place(used.size(), -1);
-    mesh.position.resize(count);
+    Places places = places_of(raw);
+    const std::size_t vertices = raw.position.size();
+    if (const std::size_t strays = vertices - places.vertex.size(); strays > 0)
+        raw.finding.push_back(
+            fmt::format("{} of {} vertices belong to no face and were left out", strays, vertices));
     std::vector<char> takes;
     if (!raw.color.empty()) {
-        // Where a surface without colours meets one that has them, the latter's count.
         takes = takes_colors(raw);
-        std::vector<char> counts(used.size(), raw.triangle_material.empty());
-        for (std::size_t t = 0; t < raw.triangle_material.size(); ++t)
-            if (takes[raw.triangle_material[t]])
-                for (const int i : raw.triangle[t]) counts[i] = 1;
-        std::vector<int> first(count, -1);
-        std::vector<char> differs(count, 0), jumps(count, 0);
-        for (const bool counting : {true, false})
-            for (std::size_t i = 0; i < kept.size(); ++i) {
-                if (counts[kept[i]] != counting) continue;
-                int& known = first[number[i]];
-                if (known < 0) known = kept[i];
-                differs[number[i]] |= raw.color[known] != raw.color[kept[i]];
-                if (counting) jumps[number[i]] = differs[number[i]];
-            }
-        const auto places = std::count(jumps.begin(), jumps.end(), 1);
-        const bool painted =
-            std::count(differs.begin(), differs.end(), 1) > 0 && paint_by_faces(raw);
-        if (painted) takes.clear();
-        if (places > 0 && !painted)
-            raw.finding.push_back(fmt::format(
-                "at {} of {} vertices the colours of adjacent faces differ: one of them was taken",
-                places, count));
-        if (!painted)
-            for (const int i : first) mesh.position_color.push_back(raw.color[i]);
+        mesh.position_color = colors_of(places, takes, raw);
+        if (mesh.position_color.empty()) takes.clear();
     }
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-        place[kept[i]] = number[i];
-        mesh.position[number[i]] = {key[i][0], key[i][1], key[i][2]};
+    std::vector<int> place(vertices, -1);
+    for (std::size_t i = 0; i < places.vertex.size(); ++i) {
+        place[places.vertex[i]] = places.of_vertex[i];
     }
+    mesh.position = std::move(places.position);
     mesh.triangle = std::move(raw.triangle);
     for (Corners& t : mesh.triangle)
         for (int& i : t) i = place[i];
@@ -317,18 +354,7 @@ TriMesh weld(RawMesh& raw, double crease_angle) {
     mesh.triangle_part = std::move(raw.triangle_part);
     mesh.part_name = std::move(raw.part_name);
     for (std::size_t i = 0; i < raw.material.size(); ++i) {
-        RawMaterial& m = raw.material[i];
-        SurfaceMaterial material;
-        material.takes_colors = takes.empty() || takes[i];
-        material.name = std::move(m.name);
-        material.color = m.color;
-        material.roughness = m.roughness;
-        material.metallic = m.metallic;
-        material.texture = std::move(m.texture);
-        if (!m.texture_bytes.empty())
-            material.embedded_texture =
-                std::make_shared<const std::string>(std::move(m.texture_bytes));
-        mesh.material.push_back(std::move(material));
+        mesh.material.push_back(surface_material(raw.material[i], takes.empty() || takes[i]));
     }
     smooth(raw, crease_angle, mesh);
     return mesh;
