@@ -22,6 +22,7 @@ struct Part {
     Vec3 moment = Vec3::Zero();
     Vec3 outward = Vec3::Zero();
 };
+using CellParts = std::map<int, Part>;  // by material
 
 void refuse_unfit(const Inset& inset, std::size_t n) {
     if (signed_volume(inset.solid) > 0) return;
@@ -29,57 +30,135 @@ void refuse_unfit(const Inset& inset, std::size_t n) {
         n, fmt::format("cannot mold: inset {} encloses no volume, or is turned inside out", n + 1));
 }
 
+// Those that the body's own surface runs through.
+std::set<CellId> surface_cells(const std::vector<CellLayer>& layers, const Lattice& lattice) {
+    std::set<CellId> cells;
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        for (const SurfacePatch& patch : layers[k].patch) {
+            cells.insert(lattice.cell_at(patch.i, patch.j, static_cast<int>(k)));
+        }
+    }
+    return cells;
+}
+
+// What an inset has of a cell; what was there makes room for it.
+void add_part(int material, double fill, const Vec3& centroid, double whole, CellParts& parts) {
+    const double left = whole - fill;
+    double had = 0;
+    for (const auto& [other, part] : parts) had += part.fill;
+    for (auto& [other, part] : parts) {
+        const double keep = had > left ? left / had : 1;
+        part.fill *= keep, part.moment *= keep;
+    }
+    parts[material].fill = fill;
+    parts[material].moment = fill * centroid;
+}
+
+// The cells that any inset reaches, one inset after the other.
+class InsetParts {
+  public:
+    InsetParts(const std::vector<CellLayer>& layers, const MoldFrame& frame,
+               const Aggregate& matter)
+        : frame_(frame), matter_(matter), surface_(surface_cells(layers, matter.lattice)) {}
+
+    // In cells: what of it lies in the body, and all of it.
+    struct Volume {
+        double inside, all;
+    };
+    Volume add(const Inset& inset, int material) {
+        Volume volume{0, signed_volume(inset.solid) / frame_.cell_volume()};
+        const std::vector<CellLayer> layers = share_cells(inset.solid, frame_);
+        for (int k = 0; k < static_cast<int>(layers.size()); ++k) {
+            const CellLayer& layer = layers[static_cast<std::size_t>(k)];
+            volume.all += layer.deficit - layer.surplus;
+            for (const CellFill& share : layer.share) volume.inside += add(share, k, material);
+            for (const SurfacePatch& patch : layer.patch) add(patch, k, material);
+        }
+        return volume;
+    }
+    std::map<CellId, CellParts>& all() { return parts_; }
+
+  private:
+    double add(const CellFill& share, int k, int material) {
+        const CellId cell = matter_.lattice.cell_at(share.i, share.j, k);
+        if (cell < 0) return 0;
+        const double whole = matter_.cell_fill[cell];
+        const double fill = std::clamp(share.fill, 0.0, whole);
+        if (fill < kPure * whole) return 0;
+        const Vec3 centroid = whole - fill < kPure * whole
+                                  ? Vec3(matter_.cell_centroid[cell].cast<double>())
+                                  : Vec3(share.moment / share.fill);
+        add_part(material, fill, centroid, whole, parts_[cell]);
+        return fill;
+    }
+    // Where the body has its own surface, an inset's may be the same and tell nothing.
+    void add(const SurfacePatch& patch, int k, int material) {
+        const CellId cell = matter_.lattice.cell_at(patch.i, patch.j, k);
+        if (cell < 0 || surface_.contains(cell)) return;
+        const auto parts = parts_.find(cell);
+        if (parts == parts_.end() || !parts->second.contains(material)) return;
+        parts->second[material].outward += patch.area * patch.normal;
+    }
+
+    const MoldFrame& frame_;
+    const Aggregate& matter_;
+    std::set<CellId> surface_;
+    std::map<CellId, CellParts> parts_;
+};
+
+// The body's own material has what the insets leave of a cell.
+void add_rest(double whole, const Vec3& centroid, CellParts& parts) {
+    Part& rest = parts[0];
+    rest.fill = whole, rest.moment = whole * centroid;
+    for (const auto& [material, part] : parts) {
+        if (material != 0) rest.fill -= part.fill, rest.moment -= part.moment;
+    }
+}
+
+// The materials of a cell, what has most of it first.
+std::vector<int> by_fill(const CellParts& parts) {
+    std::vector<int> order;
+    for (const auto& [material, part] : parts) order.push_back(material);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return parts.at(a).fill > parts.at(b).fill; });
+    return order;
+}
+
+// Of the two that have most of a cell, as if there were no others.
+MixedCell mixed_cell(CellId cell, double whole, int most, int next, const CellParts& parts,
+                     double spacing) {
+    const Part &one = parts.at(most), &other = parts.at(next);
+    const double kept = one.fill + other.fill;
+    MixedCell mixed{};
+    mixed.cell = cell;
+    for (int m : {0, 1}) {
+        const Part& part = m == 0 ? one : other;
+        mixed.material[m] = static_cast<std::uint8_t>(m == 0 ? most : next);
+        mixed.fill[m] = static_cast<float>(part.fill * whole / kept);
+        mixed.centroid[m] =
+            Vec3(part.moment / part.fill).cwiseMax(-0.5).cwiseMin(0.5).cast<float>();
+    }
+    // The boundary's own surface tells where it looks; where none was seen, the centroids.
+    Vec3 normal = one.outward - other.outward;
+    if (most != 0 && next != 0) normal = parts.at(std::max(most, next)).outward;
+    if (!(normal.norm() > 1e-6 * spacing * spacing)) {
+        normal = (mixed.centroid[1] - mixed.centroid[0]).cast<double>();
+    }
+    if (!(normal.norm() > 0)) normal = Vec3::UnitX();
+    mixed.normal = normal.normalized().cast<float>();
+    return mixed;
+}
+
 }  // namespace
 
 void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>& layers,
                   const MoldFrame& frame, Aggregate& matter, std::vector<std::string>& findings) {
     if (insets.empty()) return;
-    // Where the body has its own surface, an inset's may be the same and tell nothing.
-    std::set<CellId> skin;
-    for (std::size_t k = 0; k < layers.size(); ++k) {
-        for (const SurfacePatch& patch : layers[k].patch) {
-            skin.insert(matter.lattice.cell_at(patch.i, patch.j, static_cast<int>(k)));
-        }
-    }
-    // Of each cell that any inset reaches, the parts by material.
-    std::map<CellId, std::map<int, Part>> parts;
+    InsetParts parts(layers, frame, matter);
     for (std::size_t n = 0; n < insets.size(); ++n) {
         refuse_unfit(insets[n], n);
-        const int material = static_cast<int>(n) + 1;
         matter.inset.push_back(insets[n].material);
-        double inside = 0, all = signed_volume(insets[n].solid) / frame.cell_volume();
-        const std::vector<CellLayer> own = share_cells(insets[n].solid, frame);
-        for (std::size_t k = 0; k < own.size(); ++k) {
-            all += own[k].deficit - own[k].surplus;
-            for (const CellFill& s : own[k].share) {
-                const CellId cell = matter.lattice.cell_at(s.i, s.j, static_cast<int>(k));
-                if (cell < 0) continue;
-                const double whole = matter.cell_fill[cell];
-                const double fill = std::clamp(s.fill, 0.0, whole);
-                if (fill < kPure * whole) continue;
-                inside += fill;
-                auto& of = parts[cell];
-                const Vec3 centroid = whole - fill < kPure * whole
-                                          ? Vec3(matter.cell_centroid[cell].cast<double>())
-                                          : Vec3(s.moment / s.fill);
-                // What comes later takes its room from what was there.
-                double left = whole - fill, had = 0;
-                for (auto& [other, part] : of) had += part.fill;
-                for (auto& [other, part] : of) {
-                    const double keep = had > left ? left / had : 1;
-                    part.fill *= keep, part.moment *= keep;
-                }
-                of[material].fill = fill;
-                of[material].moment = fill * centroid;
-            }
-            for (const SurfacePatch& patch : own[k].patch) {
-                const CellId cell = matter.lattice.cell_at(patch.i, patch.j, static_cast<int>(k));
-                if (cell >= 0 && !skin.contains(cell) && parts.count(cell) &&
-                    parts[cell].count(material)) {
-                    parts[cell][material].outward += patch.area * patch.normal;
-                }
-            }
-        }
+        const auto [inside, all] = parts.add(insets[n], static_cast<int>(n) + 1);
         if (inside == 0) {
             throw InsetError(
                 n, fmt::format("cannot mold: inset {} lies outside the work-piece", n + 1));
@@ -87,43 +166,17 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
         if (inside < (1 - kOutside) * all) {
             findings.push_back(
                 fmt::format("{:.3g} % of inset {} lies outside the work-piece and is left out",
-                            100 * (1 - inside / all), material));
+                            100 * (1 - inside / all), n + 1));
         }
     }
     matter.cell_material.assign(matter.cell_fill.size(), 0);
-    for (auto& [cell, of] : parts) {
+    for (auto& [cell, of] : parts.all()) {
         const double whole = matter.cell_fill[cell];
-        const Vec3 all = whole * matter.cell_centroid[cell].cast<double>();
-        Part& rest = of[0];
-        rest.fill = whole, rest.moment = all;
-        for (const auto& [material, part] : of) {
-            if (material != 0) rest.fill -= part.fill, rest.moment -= part.moment;
-        }
-        std::vector<int> order;
-        for (const auto& [material, part] : of) order.push_back(material);
-        std::stable_sort(order.begin(), order.end(),
-                         [&](int a, int b) { return of[a].fill > of[b].fill; });
+        add_rest(whole, matter.cell_centroid[cell].cast<double>(), of);
+        const std::vector<int> order = by_fill(of);
         matter.cell_material[cell] = static_cast<std::uint8_t>(order[0]);
         if (order.size() < 2 || of[order[1]].fill < kPure * whole) continue;
-        const double kept = of[order[0]].fill + of[order[1]].fill;
-        MixedCell mixed{};
-        mixed.cell = cell;
-        for (int m : {0, 1}) {
-            const Part& part = of[order[m]];
-            mixed.material[m] = static_cast<std::uint8_t>(order[m]);
-            mixed.fill[m] = static_cast<float>(part.fill * whole / kept);
-            mixed.centroid[m] =
-                Vec3(part.moment / part.fill).cwiseMax(-0.5).cwiseMin(0.5).cast<float>();
-        }
-        // The boundary's own surface tells where it looks; where none was seen, the centroids.
-        Vec3 normal = of[order[0]].outward - of[order[1]].outward;
-        if (order[0] != 0 && order[1] != 0) normal = of[std::max(order[0], order[1])].outward;
-        if (!(normal.norm() > 1e-6 * frame.spacing * frame.spacing)) {
-            normal = (mixed.centroid[1] - mixed.centroid[0]).cast<double>();
-        }
-        if (!(normal.norm() > 0)) normal = Vec3::UnitX();
-        mixed.normal = normal.normalized().cast<float>();
-        matter.mixed_cell.push_back(mixed);
+        matter.mixed_cell.push_back(mixed_cell(cell, whole, order[0], order[1], of, frame.spacing));
     }
     if (matter.material_count() > 200) fail(ExitCode::scene, "more than 200 materials in one body");
 }
