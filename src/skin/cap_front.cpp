@@ -26,6 +26,38 @@ Edges edges_of(const CutCaps& caps, const std::function<bool(const Ends&)>& is_s
     return edges;
 }
 
+// An edge that is cut in two, and the triangles at it.
+struct Halved {
+    int point;
+    std::set<std::size_t> triangle;
+};
+
+void halve(CutCaps& caps, std::map<Ends, Halved>& halved) {
+    for (std::size_t c = 0; c < caps.triangle.size(); ++c) {
+        for (int k = 0; k < 3; ++k) {
+            const auto at = halved.find(edge_of(caps.triangle[c], k));
+            if (at != halved.end()) at->second.triangle.insert(c);
+        }
+    }
+    for (const auto& [edge, cut] : halved) {
+        for (const std::size_t c : cut.triangle) {
+            Corners& t = caps.triangle[c];
+            int k = 0;
+            while (edge_of(t, k) != edge) ++k;
+            const Ends behind = edge_of(t, (k + 1) % 3);
+            Corners other = t;
+            t[(k + 1) % 3] = cut.point;
+            other[k] = cut.point;
+            if (const auto at = halved.find(behind); at != halved.end()) {
+                at->second.triangle.erase(c);
+                at->second.triangle.insert(caps.triangle.size());
+            }
+            caps.triangle.push_back(other);
+            caps.neighbor.push_back(caps.neighbor[c]);
+        }
+    }
+}
+
 }  // namespace
 
 void part_caps(CutCaps& caps, const std::function<bool(const Ends&)>& is_seam,
@@ -60,25 +92,11 @@ void part_caps(CutCaps& caps, const std::function<bool(const Ends&)>& is_seam,
         edges = edges_of(caps, is_seam);
     }
 
-    std::map<Ends, int> middle;
+    std::map<Ends, Halved> halved;
     for (const auto& [edge, count] : edges.triangles) {
-        if (count == 2 && cannot_part(edge)) middle[edge] = half_way(edge);
+        if (count == 2 && cannot_part(edge)) halved[edge].point = half_way(edge);
     }
-    for (const auto& [edge, point] : middle) {
-        const std::size_t before = caps.triangle.size();
-        for (std::size_t c = 0; c < before; ++c) {
-            for (int k = 0; k < 3; ++k) {
-                Corners& t = caps.triangle[c];
-                if (edge_of(t, k) != edge) continue;
-                Corners other = t;
-                t[(k + 1) % 3] = point;
-                other[k] = point;
-                caps.triangle.push_back(other);
-                caps.neighbor.push_back(caps.neighbor[c]);
-                break;
-            }
-        }
-    }
+    halve(caps, halved);
 }
 
 }  // namespace swage
