@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/portable_math.h"
 #include "geometry/made_shapes.h"
+#include "geometry/polygon.h"
 
 namespace swage {
 
@@ -20,8 +21,7 @@ void add_quad(TriMesh& mesh, std::array<int, 4> q) {
     };
     if (gap(1, 3) < (1 - 1e-9) * gap(0, 2)) q = {q[1], q[2], q[3], q[0]};
     const int polygon = mesh.triangle_polygon.empty() ? 0 : mesh.triangle_polygon.back() + 1;
-    mesh.triangle.push_back({q[0], q[1], q[2]});
-    mesh.triangle.push_back({q[0], q[2], q[3]});
+    for (const Corners& half : halves(q)) mesh.triangle.push_back(half);
     mesh.triangle_polygon.insert(mesh.triangle_polygon.end(), 2, polygon);
 }
 

@@ -188,13 +188,8 @@ bool cut_polygon(std::span<const Vec3> corner, std::vector<Corners>& triangle) {
         const double odd =
             std::min(quality(p[0], p[1], p[3], normal), quality(p[1], p[2], p[3], normal));
         // A tie goes to the even diagonal whatever the rounding.
-        if (even >= odd - 1e-12) {
-            triangle.push_back({0, 1, 2});
-            triangle.push_back({0, 2, 3});
-        } else {
-            triangle.push_back({0, 1, 3});
-            triangle.push_back({1, 2, 3});
-        }
+        const Diagonal by = even >= odd - 1e-12 ? Diagonal::first : Diagonal::second;
+        for (const Corners& half : halves({0, 1, 2, 3}, by)) triangle.push_back(half);
         return std::max(even, odd) >= 0;
     }
     const std::size_t first = triangle.size();

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/portable_math.h"
+#include "geometry/polygon.h"
 #include "geometry/shape.h"
 
 namespace swage {
@@ -38,8 +39,7 @@ class Surface {
         }
     }
     void quad(int face, int a, int b, int c, int d) {
-        triangle(face, {a, b, c});
-        triangle(face, {a, c, d});
+        for (const Corners& half : halves({a, b, c, d})) triangle(face, half);
     }
     TriMesh take() { return std::move(mesh_); }
 

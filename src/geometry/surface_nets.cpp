@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "geometry/polygon.h"
 
 namespace swage {
 
@@ -201,13 +202,8 @@ class Nets {
                 const auto gap = [&](int a, int b) {
                     return (mesh.position[q[a]] - mesh.position[q[b]]).squaredNorm();
                 };
-                if (gap(0, 2) <= gap(1, 3)) {
-                    mesh.triangle.push_back({q[0], q[1], q[2]});
-                    mesh.triangle.push_back({q[0], q[2], q[3]});
-                } else {
-                    mesh.triangle.push_back({q[0], q[1], q[3]});
-                    mesh.triangle.push_back({q[1], q[2], q[3]});
-                }
+                const Diagonal by = gap(0, 2) <= gap(1, 3) ? Diagonal::first : Diagonal::second;
+                for (const Corners& half : halves(q, by)) mesh.triangle.push_back(half);
                 mesh.triangle_polygon.insert(mesh.triangle_polygon.end(), 2, polygon++);
             }
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "geometry/polygon.h"
 #include "skin/voxel_place.h"
 #include "skin/voxel_surface.h"
 
@@ -228,18 +229,13 @@ BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look, double 
     mesh.material[0].name = "boundary";
     mesh.material[1].name = kCutMaterial;
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
-        const auto& v = surface.face[f].vertex;
+        std::array<int, 4> v = surface.face[f].vertex;
         const auto length = [&](int a, int b) {
             return (mount.reference[v[a]] - mount.reference[v[b]]).squaredNorm();
         };
-        if (length(0, 2) <= length(1, 3)) {
-            mesh.triangle.push_back({v[0], v[1], v[2]});
-            mesh.triangle.push_back({v[0], v[2], v[3]});
-        } else {
-            mesh.triangle.push_back({v[1], v[2], v[3]});
-            mesh.triangle.push_back({v[1], v[3], v[0]});
-        }
-        for (int n = 0; n < 2; ++n) {
+        if (!(length(0, 2) <= length(1, 3))) v = {v[1], v[2], v[3], v[0]};
+        for (const Corners& half : halves(v)) {
+            mesh.triangle.push_back(half);
             mesh.triangle_material.push_back(surface.face[f].cut);
             mesh.triangle_polygon.push_back(static_cast<int>(f));
         }

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "geometry/edges.h"
+#include "geometry/polygon.h"
 #include "geometry/triangle_tree.h"
 #include "skin/new_look.h"
 #include "skin/parted_skin.h"
@@ -308,11 +309,9 @@ class Breaker {
                     v[k] = vertex_at(point, -1);
                 }
                 const std::vector<Vec3>& p = skin_.mesh.position;
-                if ((p[v[2]] - p[v[0]]).norm() <= (p[v[3]] - p[v[1]]).norm()) {
-                    triangles.insert(triangles.end(), {{v[0], v[1], v[2]}, {v[0], v[2], v[3]}});
-                } else {
-                    triangles.insert(triangles.end(), {{v[0], v[1], v[3]}, {v[1], v[2], v[3]}});
-                }
+                const bool first = (p[v[2]] - p[v[0]]).norm() <= (p[v[3]] - p[v[1]]).norm();
+                const auto both = halves(v, first ? Diagonal::first : Diagonal::second);
+                triangles.insert(triangles.end(), both.begin(), both.end());
             }
         }
         return triangles;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/polygon.h"
 #include "geometry/trimesh.h"
 #include "mold/mold.h"
 #include "verify/case.h"
@@ -30,8 +31,7 @@ TriMesh quarter_plate() {
         }
     }
     const auto quad = [&](int a, int b, int c, int d) {
-        mesh.triangle.push_back({a, b, c});
-        mesh.triangle.push_back({a, c, d});
+        for (const Corners& half : halves({a, b, c, d})) mesh.triangle.push_back(half);
     };
     // Of each section: inner below 0, outer below 1, inner above 2, outer above 3.
     for (int n = 0; n < kSides; ++n) {
