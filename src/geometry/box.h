@@ -29,6 +29,19 @@ struct Box {
             high[i] = std::max(high[i], point[i]);
         }
     }
+    void grow(const Box& other) {
+        low = low.cwiseMin(other.low);
+        high = high.cwiseMax(other.high);
+    }
+    Box widened(double by) const { return {low - Vec3::Constant(by), high + Vec3::Constant(by)}; }
+    // With their faces.
+    bool contains(const Vec3& point) const {
+        return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
+    }
+    bool overlaps(const Box& other) const {
+        return (low.array() <= other.high.array()).all() &&
+               (other.low.array() <= high.array()).all();
+    }
 };
 
 inline Box box_of(const std::vector<Vec3>& points) {

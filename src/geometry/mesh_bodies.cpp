@@ -27,10 +27,6 @@ constexpr std::size_t kMostMeeting = 5000;       // pairs of shells that cross o
 constexpr std::size_t kMostLooked = 50'000'000;  // pairs of triangles with overlapping boxes
 constexpr double kOnSurface = 1e-6;              // of a shell's size: no further from it
 
-bool overlap(const Box& a, const Box& b) {
-    return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
-}
-
 // Whether any of a few vertices of a lies well inside b.
 bool enters(const Shell& a, Shell& b) {
     const std::size_t step = std::max<std::size_t>(1, a.mesh.position.size() / 200);
@@ -39,15 +35,14 @@ bool enters(const Shell& a, Shell& b) {
     return false;
 }
 
-bool lies_in(const Box& in, const Box& out, double gap) {
-    return (in.low.array() >= out.low.array() - gap).all() &&
-           (in.high.array() <= out.high.array() + gap).all();
+bool lies_in(const Box& in, const Box& out) {
+    return out.contains(in.low) && out.contains(in.high);
 }
 
 // Whether a, which meets b, lies in it all the same: a part of it within, none without.
 bool touches_from_within(const Shell& a, Shell& b) {
     const double gap = kOnSurface * b.box.size().norm();
-    if (!lies_in(a.box, b.box, gap)) return false;
+    if (!lies_in(a.box, b.box.widened(gap))) return false;
     bool within = false;
     const auto look = [&](const Vec3& point) {
         const bool inside = std::abs(b.winding(point)) > 0.5;
@@ -136,7 +131,7 @@ class Settler {
             for (int j = i + 1; j < count; ++j) {
                 const Shell &a = shells_[by_x[i]], &b = shells_[by_x[j]];
                 if (b.box.low.x() > a.box.high.x()) break;
-                if (overlap(a.box, b.box))
+                if (a.box.overlaps(b.box))
                     close.emplace_back(std::min(by_x[i], by_x[j]), std::max(by_x[i], by_x[j]));
                 if (close.size() > kMostClose)
                     return fmt::format(
@@ -176,7 +171,7 @@ class Settler {
                 Box box;
                 for (const int i : t) box.grow(mesh.position[i]);
                 if (std::none_of(others[s].begin(), others[s].end(),
-                                 [&](int other) { return overlap(box, shells_[other].box); }))
+                                 [&](int other) { return box.overlaps(shells_[other].box); }))
                     continue;
                 near.triangle.push_back({t[0] + base, t[1] + base, t[2] + base});
                 of.push_back(static_cast<int>(s));
@@ -189,7 +184,7 @@ class Settler {
         around_.resize(shells_.size());
         const auto size = [&](int s) { return std::abs(shells_[s].volume); };
         const auto consider = [&](int inner, int outer) {
-            if (lies_in(shells_[inner].box, shells_[outer].box, 0) &&
+            if (lies_in(shells_[inner].box, shells_[outer].box) &&
                 std::abs(shells_[outer].winding(shells_[inner].mesh.position[0])) >= 0.5)
                 around_[inner].push_back(outer);
         };
@@ -381,8 +376,7 @@ class Settler {
         if (std::abs(volume - sum) <= 1e-9 * std::abs(sum)) return true;
         a.mesh = dress_pieces(std::move(united), origin, a.mesh, b.mesh, mesh_);
         a.volume = volume;
-        a.box.grow(b.box.low);
-        a.box.grow(b.box.high);
+        a.box.grow(b.box);
         a.tree.reset();
         b.mesh.triangle.clear();
         merged_[y] = x;

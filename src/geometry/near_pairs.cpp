@@ -13,12 +13,7 @@ namespace swage {
 namespace {
 
 bool is_sound(const Box& box) {
-    return box.low.allFinite() && box.high.allFinite() &&
-           (box.low.array() <= box.high.array()).all();
-}
-
-bool holds(const Box& box, const Vec3& p) {
-    return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
+    return box.low.allFinite() && box.high.allFinite() && !box.empty();
 }
 
 // The pairs of each point in a row, in the order in which they came.
@@ -48,8 +43,7 @@ std::vector<NearPair> near_pairs(const std::vector<Vec3>& point, const std::vect
     std::size_t sound = 0;
     for (const Box& one : box) {
         if (!is_sound(one)) continue;
-        all.grow(one.low);
-        all.grow(one.high);
+        all.grow(one);
         width += (one.high - one.low).maxCoeff();
         ++sound;
     }
@@ -68,7 +62,7 @@ std::vector<NearPair> near_pairs(const std::vector<Vec3>& point, const std::vect
 
     std::vector<int> near;
     for (std::size_t p = 0; p < point.size(); ++p) {
-        if (holds(all, point[p])) near.push_back(static_cast<int>(p));
+        if (all.contains(point[p])) near.push_back(static_cast<int>(p));
     }
     if (near.empty()) return {};
     const std::size_t buckets = std::bit_ceil(2 * near.size());
@@ -101,7 +95,7 @@ std::vector<NearPair> near_pairs(const std::vector<Vec3>& point, const std::vect
         for (int d = 0; d < 3; ++d) bins *= high[d] - low[d] + 1.0;
         if (bins > static_cast<double>(near.size())) {
             for (int p : near) {
-                if (holds(box[b], point[p])) pair.push_back({p, id});
+                if (box[b].contains(point[p])) pair.push_back({p, id});
             }
             continue;
         }
@@ -111,7 +105,7 @@ std::vector<NearPair> near_pairs(const std::vector<Vec3>& point, const std::vect
                     const Bin here{i, j, k};
                     const std::size_t at = hashed(here);
                     for (int n = begin[at]; n < begin[at + 1]; ++n) {
-                        if (holds(box[b], binned[n].at) && binned[n].bin == here) {
+                        if (box[b].contains(binned[n].at) && binned[n].bin == here) {
                             pair.push_back({binned[n].point, id});
                         }
                     }
@@ -211,7 +205,7 @@ std::vector<NearPair> near_pairs_by_spheres(const std::vector<Vec3>& point,
         if (a.children == 0 && b.children == 0) {
             for (int p = a.first; p < a.first + a.count; ++p) {
                 for (int c = b.first; c < b.first + b.count; ++c) {
-                    if (holds(box[boxes.item(c)], point[points.item(p)])) {
+                    if (box[boxes.item(c)].contains(point[points.item(p)])) {
                         pair.push_back({points.item(p), boxes.item(c)});
                     }
                 }

@@ -16,7 +16,7 @@ std::vector<CellId> cells_there(const Aggregate& body, const std::vector<Vec3>& 
         for (ParticleId p : body.lattice.cell_corners(static_cast<CellId>(c))) {
             around.grow(body.particle_position.at(p));
         }
-        box.push_back({around.low - Vec3::Constant(wider), around.high + Vec3::Constant(wider)});
+        box.push_back(around.widened(wider));
         middle.push_back(cell_middle(body, static_cast<CellId>(c)));
     }
     const auto far = [&](std::size_t at, CellId cell) {

@@ -52,7 +52,7 @@ std::size_t UsdMachines::count() const {
 
 Box UsdMachines::box(bool endless) const {
     Box box = box_;
-    if (endless && !endless_.empty()) box.grow(endless_.low), box.grow(endless_.high);
+    if (endless) box.grow(endless_);
     return box;
 }
 

@@ -197,8 +197,7 @@ std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& show
         drawables.push_back({&mesh, &item, stage.from_mesh(item.world_from_mesh, mesh.origin)});
     }
     if (casting.empty()) casting.grow(stage.center);
-    shown.grow(casting.low);
-    shown.grow(casting.high);
+    shown.grow(casting);
     return drawables;
 }
 
@@ -434,8 +433,7 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
         static_cast<long>(settings.width) * settings.height <= kMostMultisampledPixels;
 
     const View view = camera.at(picture.film_share);
-    eye_is_outside = (view.eye.array() < shown.low.array()).any() ||
-                     (view.eye.array() > shown.high.array()).any();
+    eye_is_outside = !shown.contains(view.eye);
     const FrameBlock frame =
         frame_block(settings, stage, shown, casting, view, ground_height, front);
     gl.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer.id());

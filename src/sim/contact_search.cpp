@@ -38,8 +38,7 @@ void find_contacts(const ContactSide& from, const ContactSide& onto, double marg
     for (std::size_t n = 0; n < point.size(); ++n) {
         if (from.meets(static_cast<int>(n))) all.grow(point[n]);
     }
-    all.low.array() -= margin;
-    all.high.array() += margin;
+    all = all.widened(margin);
     std::vector<CellId> cell;
     std::vector<Vec3i> site;
     std::vector<Box> box;
@@ -50,16 +49,11 @@ void find_contacts(const ContactSide& from, const ContactSide& onto, double marg
         const int n = id - run->first;
         std::array<ParticleId, 8> c;
         for (int q = 0; q < 8; ++q) c[q] = run->row[q >> 1] + n + (q & 1);
-        Box one = box_of_cell(other.particle_position, c);
-        if ((one.low.array() > all.high.array()).any() ||
-            (one.high.array() < all.low.array()).any()) {
-            continue;
-        }
-        one.low.array() -= margin;
-        one.high.array() += margin;
+        const Box one = box_of_cell(other.particle_position, c);
+        if (!one.overlaps(all)) continue;
         cell.push_back(id);
         site.emplace_back(run->i + n, run->j, run->k);
-        box.push_back(one);
+        box.push_back(one.widened(margin));
     }
     const std::vector<NearPair> pair = near_pairs(point, box);
 

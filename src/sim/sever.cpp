@@ -87,7 +87,7 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
         if ((t[1] - t[0]).cross(t[2] - t[0]).norm() == 0) continue;
         triangles.push_back(t);
         boxes.push_back(box);
-        all.grow(box.low), all.grow(box.high);
+        all.grow(box);
     }
     std::vector<SeverEvent> events;
     for (const Span& span : matter.lattice.span) {
@@ -97,14 +97,10 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
             if (weight[lower] <= 0) continue;
             const Vec3 from = matter.particle_position.at(lower);
             const Vec3 to = matter.particle_position.at(span.upper + n);
-            const Vec3 low = from.cwiseMin(to), high = from.cwiseMax(to);
-            const auto apart = [&](const Box& box) {
-                return (high.array() < box.low.array()).any() ||
-                       (low.array() > box.high.array()).any();
-            };
-            if (triangles.empty() || apart(all)) continue;
+            const Box own = {from.cwiseMin(to), from.cwiseMax(to)};
+            if (triangles.empty() || !own.overlaps(all)) continue;
             for (std::size_t t = 0; t < triangles.size(); ++t) {
-                if (apart(boxes[t]) || !crosses(from, to, triangles[t])) continue;
+                if (!own.overlaps(boxes[t]) || !crosses(from, to, triangles[t])) continue;
                 events.push_back({span.direction, lower, span.upper + n, weight[lower]});
                 break;
             }

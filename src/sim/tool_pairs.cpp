@@ -100,9 +100,7 @@ std::vector<int> ToolPairs::find_candidates(const Aggregate& matter, const Drive
     for (std::size_t t = 0; t < apparatus_->tool.size(); ++t) {
         const Tool& tool = apparatus_->tool[t];
         const Pose tool_from_world = now.world_from_tool[t].inverse();
-        Box reach = bounds_of(tool.shape);
-        reach.low.array() -= spacing_;
-        reach.high.array() += spacing_;
+        const Box reach = bounds_of(tool.shape).widened(spacing_);
         struct Near {
             int point;
             double clearance, distance;
@@ -117,10 +115,7 @@ std::vector<int> ToolPairs::find_candidates(const Aggregate& matter, const Drive
             for (std::size_t p = begin; p < end; ++p) {
                 if (!touch_->meets(int(p))) continue;
                 const Vec3 local = tool_from_world * points().position(p, matter.particle_position);
-                if ((local.array() < reach.low.array()).any() ||
-                    (local.array() > reach.high.array()).any()) {
-                    continue;
-                }
+                if (!reach.contains(local)) continue;
                 const double distance = distance_to(tool.shape, local).value;
                 if (distance >= spacing_) continue;
                 double carried = 0;  // at most, of how far its particles move

@@ -50,11 +50,7 @@ std::vector<std::vector<Triangle>> separate_sweeps(const std::vector<Triangle>& 
 std::vector<Triangle> near_box(const std::vector<Triangle>& sweep, const Box& box) {
     std::vector<Triangle> near;
     for (const Triangle& t : sweep) {
-        const Box own = box_of({t.begin(), t.end()});
-        if ((own.low.array() <= box.high.array()).all() &&
-            (own.high.array() >= box.low.array()).all()) {
-            near.push_back(t);
-        }
+        if (box_of({t.begin(), t.end()}).overlaps(box)) near.push_back(t);
     }
     return near;
 }
@@ -310,9 +306,7 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
     CutResult result;
     const double a = matter.lattice.spacing;
     std::vector<Vec3> now = position;
-    Box box = box_of(position);
-    box.low.array() -= a, box.high.array() += a;
-    SweepPlanes swept = planes_of(sweep, box, 1e-3 * a);
+    SweepPlanes swept = planes_of(sweep, box_of(position).widened(a), 1e-3 * a);
     result.has_curved = swept.has_curved;
     for (SweepPlane& plane : swept.plane) {
         // As the blade does, which never runs exactly through a particle.
