@@ -19,14 +19,13 @@ GripSet::GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimS
 
 void GripSet::connections_changed(const Aggregate& matter) {
     torn_.clear();
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        for (int point : apparatus_->grip[g].point) {
+    for_each_grip([&](std::size_t, const Grip& grip) {
+        for (int point : grip.point) {
             if (!swage::is_torn(matter, std::size_t(point))) continue;
             torn_.resize(matter.surface.size(), 0);
             torn_[std::size_t(point)] = 1;
         }
-    }
+    });
 }
 
 double GripSet::stiffness(const Aggregate& matter, int point) const {
@@ -50,15 +49,10 @@ void GripSet::limit_stiffness(const Aggregate& matter, double step) {
 
 template <typename Act>
 void GripSet::for_each_point(const Aggregate& matter, const Drive& now, const Act& act) const {
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        const Grip& grip = apparatus_->grip[g];
+    for_each_grip([&](std::size_t g, const Grip& grip) {
         const Pose& pose = now.world_from_grip[g];
         const bool wholly = grip.hold == Vec3::Ones();
-        for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            const int point = grip.point[n];
-            if (is_torn(point)) continue;
-            const double k = stiffness(matter, grip, n);
+        for_each_held(matter, grip, [&](std::size_t n, int point, double k) {
             const Vec3 x = matter.surface_position(point);
             Vec3 force;
             if (wholly) {
@@ -68,35 +62,27 @@ void GripSet::for_each_point(const Aggregate& matter, const Drive& now, const Ac
                 force = pose.turn(k * grip.hold.cwiseProduct(reach));
             }
             act(g, point, x, force, k);
-        }
-    }
+        });
+    });
 }
 
 void GripSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        const Grip& grip = apparatus_->grip[g];
-        for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            const int point = grip.point[n];
-            if (is_torn(point)) continue;
-            spread_stiffness(matter.surface, point, this->stiffness(matter, grip, n), stiffness);
-        }
-    }
+    for_each_grip([&](std::size_t, const Grip& grip) {
+        for_each_held(matter, grip, [&](std::size_t, int point, double k) {
+            spread_stiffness(matter.surface, point, k, stiffness);
+        });
+    });
 }
 
 void GripSet::add_held_points(const Aggregate& matter, const Drive& now,
                               std::vector<HeldPoint>& held) const {
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        const Grip& grip = apparatus_->grip[g];
+    for_each_grip([&](std::size_t g, const Grip& grip) {
         const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
         const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
-        for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            const int point = grip.point[n];
-            if (is_torn(point)) continue;
-            held.push_back(held_point(matter.surface, point, stiffness(matter, grip, n) * hold));
-        }
-    }
+        for_each_held(matter, grip, [&](std::size_t, int point, double k) {
+            held.push_back(held_point(matter.surface, point, k * hold));
+        });
+    });
 }
 
 void GripSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
@@ -134,13 +120,12 @@ double GripSet::add_all(const Aggregate& matter, const Drive& now, Vec3Array& fo
 
 double GripSet::travel(const Drive& from, const Drive& to) const {
     double farthest = 0;
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        for (const Vec3& anchor : apparatus_->grip[g].anchor) {
+    for_each_grip([&](std::size_t g, const Grip& grip) {
+        for (const Vec3& anchor : grip.anchor) {
             const Vec3 way = to.world_from_grip[g] * anchor - from.world_from_grip[g] * anchor;
             farthest = std::max(farthest, way.norm());
         }
-    }
+    });
     return farthest;
 }
 

@@ -65,7 +65,21 @@ class GripSet {
     template <typename Act>
     void for_each_point(const Aggregate& matter, const Drive& now, const Act& act) const;
 
-    bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
+    // Calls act(g, grip) for each grip on this body.
+    template <typename Act>
+    void for_each_grip(const Act& act) const {
+        for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+            if (apparatus_->grip[g].body == body_) act(g, apparatus_->grip[g]);
+        }
+    }
+    // Calls act(n, point, stiffness) for each point that a grip holds.
+    template <typename Act>
+    void for_each_held(const Aggregate& matter, const Grip& grip, const Act& act) const {
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const int point = grip.point[n];
+            if (!is_torn(point)) act(n, point, stiffness(matter, grip, n));
+        }
+    }
     bool is_torn(int point) const { return !torn_.empty() && torn_[std::size_t(point)]; }
     double stiffness(const Aggregate& matter, int point) const;  // of a whole patch [N/m]
     // Of the grip's n-th point [N/m].

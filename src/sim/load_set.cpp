@@ -74,9 +74,8 @@ LoadSet::LoadSet(const Apparatus& apparatus, const SimSettings& settings, int bo
 
 void LoadSet::connections_changed(const Aggregate& matter) {
     const std::shared_ptr<const Parted> before = std::exchange(parted_, nullptr);
-    const bool presses =
-        std::any_of(apparatus_->load.begin(), apparatus_->load.end(),
-                    [&](const Load& load) { return pushes(load) && load.force.empty(); });
+    bool presses = false;
+    for_each_load([&](std::size_t, const Load& load) { presses = presses || load.force.empty(); });
     if (!presses) return;
     const std::size_t count = matter.surface.size();
     Parted parted;
@@ -117,9 +116,8 @@ std::span<const OpenFace> LoadSet::faces_of(const Load& load) const {
 
 // What is laid open now has not moved since it was.
 void LoadSet::renew_last(const Aggregate& matter, const Parted* before) {
-    for (std::size_t l = 0; l < last_.force.size(); ++l) {
-        const Load& load = apparatus_->load[l];
-        if (!pushes(load)) continue;
+    if (last_.force.empty()) return;  // not started
+    for_each_load([&](std::size_t l, const Load& load) {
         const std::size_t points = load.point.size();
         std::map<std::array<ParticleId, 4>, std::size_t> known;
         for (std::size_t n = points; n < last_.force[l].size(); ++n) {
@@ -135,7 +133,7 @@ void LoadSet::renew_last(const Aggregate& matter, const Parted* before) {
             last_.moment[l].push_back(is_new ? now[n] : moment[had->second]);
             last_.force[l].push_back(is_new ? Vec3(Vec3::Zero()) : force[had->second]);
         }
-    }
+    });
 }
 
 void LoadSet::leave_alone(const Aggregate& matter, const std::vector<ParticleId>& particles) {
@@ -144,9 +142,8 @@ void LoadSet::leave_alone(const Aggregate& matter, const std::vector<ParticleId>
     for (ParticleId p : particles) heavy_mass_[std::size_t(p)] = 0;
     left_alone_.insert(left_alone_.end(), particles.begin(), particles.end());
     if (!started_) return;
-    for (const Load& load : apparatus_->load) {
-        if (pushes(load)) last_.moment[index_of(load)] = moments_of(load, matter);
-    }
+    for_each_load(
+        [&](std::size_t l, const Load& load) { last_.moment[l] = moments_of(load, matter); });
     last_.mass_moment = mass_moment(heavy_mass_, matter.particle_position);
 }
 
@@ -251,9 +248,8 @@ std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
 void LoadSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
     std::vector<Vec3> kept;
     for (ParticleId p : left_alone_) kept.push_back(force.at(p));
-    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
-        const Load& load = apparatus_->load[l];
-        if (!pushes(load) || now.load_strength[l] == 0) continue;
+    for_each_load([&](std::size_t l, const Load& load) {
+        if (now.load_strength[l] == 0) return;
         const std::vector<Vec3> push = forces_of(load, now.load_strength[l], matter);
         const std::size_t points = load.point.size();
         for (std::size_t n = 0; n < points; ++n) {
@@ -261,56 +257,48 @@ void LoadSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& f
         }
         const std::span<const OpenFace> face = faces_of(load);
         for (std::size_t n = 0; n < face.size(); ++n) spread(face[n], push[points + n], force);
-    }
+    });
     for (std::size_t n = 0; n < kept.size(); ++n) force.set(left_alone_[n], kept[n]);
 }
 
 double LoadSet::size(const Aggregate& matter, const Drive& now) const {
     double largest = has_gravity() ? matter.mass() * gravity(now).norm() : 0;
-    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
-        const Load& load = apparatus_->load[l];
-        if (!pushes(load)) continue;
+    for_each_load([&](std::size_t l, const Load& load) {
         double sum = 0;
         for (const Vec3& force : load.force) sum += force.norm();
         if (load.force.empty()) {
             for (double area : areas_of(load, matter)) sum += std::abs(load.pressure) * area;
         }
         largest = std::max(largest, std::abs(now.load_strength[l]) * sum);
-    }
+    });
     return largest;
 }
 
 bool LoadSet::eases(const Drive& from, const Drive& to) const {
     bool eases = has_gravity() && gravity(to).norm() < gravity(from).norm();
-    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
-        if (!pushes(apparatus_->load[l])) continue;
+    for_each_load([&](std::size_t l, const Load&) {
         eases = eases || std::abs(to.load_strength[l]) < std::abs(from.load_strength[l]);
-    }
+    });
     return eases;
 }
 
 bool LoadSet::is_stirred(const Drive& since, const Drive& now) const {
     constexpr double kLeast = 1e-6;
     bool stirred = (gravity(now) - gravity(since)).norm() > kLeast * gravity_.norm();
-    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
-        if (!pushes(apparatus_->load[l])) continue;
+    for_each_load([&](std::size_t l, const Load&) {
         stirred = stirred || std::abs(now.load_strength[l] - since.load_strength[l]) > kLeast;
-    }
+    });
     return stirred;
 }
 
 LoadSet::Settled LoadSet::settled(const Aggregate& matter, const Drive& now) const {
     Settled state;
-    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
-        const Load& load = apparatus_->load[l];
-        if (!pushes(load)) {
-            state.moment.emplace_back();
-            state.force.emplace_back();
-            continue;
-        }
-        state.moment.push_back(moments_of(load, matter));
-        state.force.push_back(forces_of(load, now.load_strength[l], matter));
-    }
+    state.moment.resize(apparatus_->load.size());
+    state.force.resize(apparatus_->load.size());
+    for_each_load([&](std::size_t l, const Load& load) {
+        state.moment[l] = moments_of(load, matter);
+        state.force[l] = forces_of(load, now.load_strength[l], matter);
+    });
     if (has_gravity()) {
         state.mass_moment = mass_moment(heavy_mass(matter), matter.particle_position);
         state.gravity = gravity(now);
@@ -342,13 +330,8 @@ void LoadSet::commit(const Aggregate& matter, const Drive& now, std::vector<doub
 }
 
 std::vector<PushSum> LoadSet::sums(const Aggregate& matter, const Drive& now) const {
-    std::vector<PushSum> sums;
-    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
-        const Load& load = apparatus_->load[l];
-        if (!pushes(load)) {
-            sums.emplace_back();
-            continue;
-        }
+    std::vector<PushSum> sums(apparatus_->load.size());
+    for_each_load([&](std::size_t l, const Load& load) {
         std::vector<double> area = areas_of(load, matter);
         std::vector<Vec3> position = positions_of(load, matter),
                           force = forces_of(load, now.load_strength[l], matter);
@@ -358,8 +341,8 @@ std::vector<PushSum> LoadSet::sums(const Aggregate& matter, const Drive& now) co
             force[n] *= part.share;
             if (part.share != 0) position[n] = part.moment / part.share;
         }
-        sums.push_back(sum_of(area, position, force));
-    }
+        sums[l] = sum_of(area, position, force);
+    });
     if (has_gravity()) {
         const std::vector<double>& heavy = heavy_mass(matter);
         const double mass = std::accumulate(heavy.begin(), heavy.end(), 0.0);

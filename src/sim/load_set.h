@@ -118,6 +118,13 @@ class LoadSet {
     void renew_last(const Aggregate& matter, const Parted* before);
 
     bool pushes(const Load& load) const { return load.body == body_; }
+    // Calls act(l, load) for each load on this body.
+    template <typename Act>
+    void for_each_load(const Act& act) const {
+        for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+            if (pushes(apparatus_->load[l])) act(l, apparatus_->load[l]);
+        }
+    }
     std::size_t index_of(const Load& load) const {
         return std::size_t(&load - apparatus_->load.data());
     }
