@@ -147,7 +147,7 @@ std::vector<std::size_t> BodyContact::groups() const {
 
 void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
                              const std::vector<char>& asleep, std::vector<ContactSums>& sums,
-                             bool again) {
+                             Meet meet) {
     std::vector<char> acts(side_.size(), 0);
     std::vector<std::size_t> awake;
     sums.assign(side_.size(), {});
@@ -179,8 +179,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().find_springs();
     }
-    parallel_for(awake.size(), threads,
-                 [&](std::size_t n) { way_[awake[n]].respond(step, again); });
+    parallel_for(awake.size(), threads, [&](std::size_t n) { way_[awake[n]].respond(step, meet); });
     for (std::size_t w : awake) way_[w].answer();
     // NOTE: what friction lets go of may be any part of what a way holds, however short the step,
     // and the shares that both have then are others. With those from before it counted as less that

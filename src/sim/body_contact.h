@@ -52,11 +52,10 @@ class BodyContact {
     // Adds the forces at the present positions, from which `step` [s] goes on with the forces so
     // far, which must be all others, and gravity [m/s2]; 0: from one equilibrium to another, where
     // nothing has a speed. By body; sums likewise, set anew. Between bodies that sleep nothing
-    // changes. `again`: where the last step that was kept has ended; what touched then has the
-    // forces of then.
+    // changes.
     void add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
                     const std::vector<char>& asleep, std::vector<ContactSums>& sums,
-                    bool again = false);
+                    Meet meet = Meet::anew);
     // The step is kept: remembers where points stick and how they met. What sleeps has made none.
     void commit(const std::vector<char>& asleep);
 

@@ -291,7 +291,7 @@ struct ContactWay::Kernel {
     }
 
     template <bool kOwn>
-    SWAGE_INLINE void respond_chunk(std::size_t chunk, double step, bool again) const {
+    SWAGE_INLINE void respond_chunk(std::size_t chunk, double step, Meet meet) const {
         ContactSums& sums = way.chunk_[chunk].sums = {};
         double& kept = way.chunk_[chunk].kept = 0;
         const std::size_t end = way.begin_of(chunk + 1);
@@ -303,8 +303,9 @@ struct ContactWay::Kernel {
             const double share = kOwn ? way.own_.share(n) : way.share_;
             ImpactForce f;
             if (at.meets()) {
-                f = again && last.history.touches ? same_as(contact, last, at, share)
-                                                  : impact(contact, last, at, share, step);
+                f = meet == Meet::as_kept && last.history.touches
+                        ? same_as(contact, last, at, share)
+                        : impact(contact, last, at, share, step);
                 at.spring = vec4(f.force) - share * at.spring;
             }
             next.history = f.history;
@@ -377,10 +378,10 @@ void ContactWay::push_chunk(std::size_t chunk) {
     });
 }
 
-void ContactWay::respond_chunk(std::size_t chunk, double step, bool again) {
+void ContactWay::respond_chunk(std::size_t chunk, double step, Meet meet) {
     by_fours([&]() __attribute__((always_inline)) {
-        is_own() ? Kernel{*this}.respond_chunk<true>(chunk, step, again)
-                 : Kernel{*this}.respond_chunk<false>(chunk, step, again);
+        is_own() ? Kernel{*this}.respond_chunk<true>(chunk, step, meet)
+                 : Kernel{*this}.respond_chunk<false>(chunk, step, meet);
     });
 }
 

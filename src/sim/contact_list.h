@@ -21,6 +21,10 @@ struct Contact : CellPlace {
     Vec3 dashed = Vec3::Zero();  // what its dashpots did when last found [N]
 };
 
+// Contacts meet as a step has brought them; or they are where the last step that was kept has
+// ended, and what touched then has the forces of then.
+enum class Meet { anew, as_kept };
+
 // What it remembers, committed once a step.
 struct ContactMemory {
     using IsPlain = ContactMemory;

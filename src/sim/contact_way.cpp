@@ -280,14 +280,14 @@ void ContactWay::keep_own() {
     keep_more(own_.kept_more());
 }
 
-void ContactWay::respond(double step, bool again) {
+void ContactWay::respond(double step, Meet meet) {
     next_.resize(list_.size());
     // What a blade has cut is counted as gone once.
-    for (std::size_t n = 0; again && n < list_.size(); ++n) {
+    for (std::size_t n = 0; meet == Meet::as_kept && n < list_.size(); ++n) {
         if (!meeting_[n].is_known()) list_.memory[n] = {};
     }
     find_met();
-    parallel_for(chunk_.size(), [&](std::size_t chunk) { respond_chunk(chunk, step, again); });
+    parallel_for(chunk_.size(), [&](std::size_t chunk) { respond_chunk(chunk, step, meet); });
 }
 
 void ContactWay::answer() {

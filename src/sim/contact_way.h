@@ -73,8 +73,8 @@ class ContactWay {
     void push(double share, double gone, double turned);
     // Of a body with itself: the share of each (sim/own_shares.h).
     void push_own();
-    // Dashpots and friction, given what all springs do. `again`: as they were when last committed.
-    void respond(double step, bool again);
+    // Dashpots and friction, given what all springs do.
+    void respond(double step, Meet meet);
     // Adds what they do.
     void answer();
     // What its springs would hold alone, now that friction has let go of some of it [J].
@@ -201,7 +201,7 @@ class ContactWay {
     void take_moved(const Chunk& chunk);
     void find_met();
     void push_chunk(std::size_t chunk);
-    void respond_chunk(std::size_t chunk, double step, bool again);
+    void respond_chunk(std::size_t chunk, double step, Meet meet);
     void answer_chunk(std::size_t chunk);
 
     ContactSide *from_, *onto_;

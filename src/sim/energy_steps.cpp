@@ -159,13 +159,13 @@ std::vector<char> EnergySteps::all_but(const Group& group) const {
 }
 
 // Adds the forces of contact within the group, where nothing else has moved since the group began.
-void EnergySteps::meet(const Group& group, double step, bool again) {
+void EnergySteps::meet(const Group& group, double step, Meet how) {
     if (!contact_.acts()) return;
     std::vector<Vec3Array*> force;
     for (Mover& m : mover_) force.push_back(&m.body.force());
     contact_.renew(all_but(group));
     contact_.add_forces(force, mover_[group[0]].body.gravity(), step, all_but(group), by_contact_,
-                        again);
+                        how);
 }
 
 std::vector<Stored> EnergySteps::stored(const Group& group, const Drive& now) {
@@ -223,7 +223,7 @@ EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const
             }
         };
         swap_speeds();
-        meet(group, t.step, false);
+        meet(group, t.step, Meet::anew);
         swap_speeds();
         for (std::size_t b : group) outcome.body[b].by_contact.add(by_contact_[b], t.step);
         contact_.commit(all_but(group));
@@ -306,7 +306,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
                           MoveOutcome& outcome) {
     contact_.renew_all(all_but(group));
     meet(group, mover_[group[0]].last_step > 0 ? mover_[group[0]].last_step : stable_step(group),
-         true);
+         Meet::as_kept);
     std::vector<Stored> store = stored(group, from);
     for (std::size_t n = 0; n < group.size(); ++n) {
         const std::size_t b = group[n];

@@ -99,7 +99,7 @@ class EnergySteps {
     void keep(const Group& group, const Try& t, MoveOutcome& outcome);
     void take_back(const Group& group, Try& t, double budget, MoveOutcome& outcome);
     std::vector<char> all_but(const Group& group) const;
-    void meet(const Group& group, double step, bool again);
+    void meet(const Group& group, double step, Meet how);
     std::vector<Stored> stored(const Group& group, const Drive& now);
 
     const Apparatus& apparatus_;

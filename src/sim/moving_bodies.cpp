@@ -34,7 +34,7 @@ double MovingBodies::connections_changed(std::size_t b, const Drive& now) {
 
 void MovingBodies::start(const Drive& from, double step, MoveOutcome& outcome) {
     for_each_awake([&](std::size_t b) { body_[b].start(from, outcome.body[b]); });
-    meet(from, step, true, outcome);
+    meet(from, step, Meet::as_kept, outcome);
     for (std::size_t b = 0; b < by_contact_.size(); ++b) {
         outcome.body[b].by_contact.start(by_contact_[b]);
     }
@@ -62,7 +62,7 @@ void MovingBodies::restore(const Drive& begin, double step, const std::vector<Bo
         if (gone_wrong[b].broken > outcome.body[b].broken) contact_.connections_changed(b);
     });
     contact_.restore(*contact_state_);
-    meet(begin, step, true, outcome);
+    meet(begin, step, Meet::as_kept, outcome);
 }
 
 void MovingBodies::begin_block(bool implicit, MoveOutcome& outcome) {
@@ -76,13 +76,13 @@ void MovingBodies::end_block(MoveOutcome& outcome) {
     in_block_ = false;
 }
 
-void MovingBodies::meet(const Drive& now, double step, bool again, MoveOutcome& outcome) {
+void MovingBodies::meet(const Drive& now, double step, Meet how, MoveOutcome& outcome) {
     if (!contact_.acts()) return;
     contact_.renew(sleeping_.asleep());
     if (sleeping_.any()) wake_neighbours(now, outcome);
     std::vector<Vec3Array*> force;
     for (MovingBody& body : body_) force.push_back(&body.force());
-    contact_.add_forces(force, body_[0].gravity(), step, sleeping_.asleep(), by_contact_, again);
+    contact_.add_forces(force, body_[0].gravity(), step, sleeping_.asleep(), by_contact_, how);
 }
 
 // What sleeps near a body that is awake.
@@ -120,7 +120,7 @@ void MovingBodies::wake_stirred(const Drive& before, const Drive& now, double st
         body_[b].begin_step(before);
         body_[b].find_forces(before, 0, outcome.body[b]);
     });
-    meet(before, step, true, outcome);
+    meet(before, step, Meet::as_kept, outcome);
 }
 
 void MovingBodies::finish_step(const Drive& before, const Drive& now, double step,
@@ -136,7 +136,7 @@ void MovingBodies::finish_step(const Drive& before, const Drive& now, double ste
         if (broke[b]) contact_.connections_changed(b);
     }
     if (!contact_.acts()) return;
-    meet(now, step, false, outcome);
+    meet(now, step, Meet::anew, outcome);
     for (std::size_t b = 0; b < body_.size(); ++b) {
         outcome.body[b].by_contact.add(by_contact_[b], step);
     }

@@ -92,7 +92,7 @@ class MovingBodies {
 
     void save_one(std::size_t body);
     // Adds what bodies in contact do to each other in a step of this length [s] from here.
-    void meet(const Drive& now, double step, bool again, MoveOutcome& outcome);
+    void meet(const Drive& now, double step, Meet how, MoveOutcome& outcome);
     void wake(std::size_t body, MoveOutcome& outcome);
     void wake_neighbours(const Drive& now, MoveOutcome& outcome);
 
