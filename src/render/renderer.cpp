@@ -6,7 +6,6 @@
 #include "render/renderer.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "base/error.h"
 #include "render/mesh_cache.h"
@@ -14,6 +13,7 @@
 #include "render/studio.h"
 #include "render/targets.h"
 #include "render/texture_cache.h"
+#include "render/visibility_pass.h"
 
 namespace swage {
 
@@ -24,36 +24,6 @@ constexpr int kSamples = 4;
 // hardly tells: edges are softened afterwards instead.
 constexpr std::size_t kMostMultisampledTriangles = 60'000;
 constexpr long kMostMultisampledPixels = 4096l * 4096l;
-constexpr float kNowhere = 1e4f;  // depth of the backdrop in the half-size pass [stage]
-
-// An item, ready to draw.
-struct Drawable {
-    const GpuMesh* mesh;
-    const DrawItem* item;
-    glm::mat4 stage_from_mesh;
-};
-
-// Back faces of closed bodies are left out, which halves the work.
-class Culling {
-  public:
-    Culling(const Gl& gl, bool cull) : gl_(gl), cull_(cull) {
-        if (cull_) gl_.Enable(GL_CULL_FACE);
-    }
-    ~Culling() {
-        if (cull_) gl_.Disable(GL_CULL_FACE);
-    }
-    Culling(const Culling&) = delete;
-    Culling& operator=(const Culling&) = delete;
-
-  private:
-    const Gl& gl_;
-    bool cull_;
-};
-
-void set_unit(const Gl& gl, GLenum unit, GLuint texture) {
-    gl.ActiveTexture(GL_TEXTURE0 + unit);
-    gl.BindTexture(GL_TEXTURE_2D, texture);
-}
 
 void grow(Box& box, const DrawItem& item) {
     for (const Vec3& p : item.position ? *item.position : item.mesh->position) {
@@ -100,20 +70,10 @@ struct Renderer::Parts {
           gl(canvas.gl()),
           meshes(gl),
           textures(gl),
-          shadow_shader(gl, "shadow.vert", "shadow.frag"),
-          depth_shader(gl, "surface.vert", "depth.frag"),
-          ground_depth_shader(gl, "ground.vert", "depth.frag"),
-          visibility_shader(gl, "screen.vert", "visibility.frag",
-                            {"normal_and_depth", "shadow_depth"}),
-          blur_shader(gl, "screen.vert", "blur.frag", {"visibility"}),
+          bare(gl),
+          visibility(gl, bare, wanted.width, wanted.height),
           surface_shaders(gl, ""),
-          nothing(make_vertex_array(gl)),
-          frame_buffer(make_buffer(gl)),
-          shadow(make_target(gl, kShadowMapSide, kShadowMapSide, {.depth_texture = true})),
-          half(make_target(gl, (settings.width + 1) / 2, (settings.height + 1) / 2,
-                           {.color = GL_RGBA32F, .depth_buffer = true})) {
-        visibility = make_target(gl, half.width, half.height, {.color = GL_RGBA16});
-        blurred = make_target(gl, half.width, half.height, {.color = GL_RGBA16});
+          frame_buffer(make_buffer(gl)) {
         front = front_of(camera.at(0));
     }
 
@@ -127,15 +87,14 @@ struct Renderer::Parts {
     const Gl& gl;
     MeshCache meshes;
     TextureCache textures;
-    Shader shadow_shader, depth_shader, ground_depth_shader, visibility_shader, blur_shader;
+    BareShapes bare;
+    VisibilityPass visibility;
     SurfaceShaders surface_shaders;
     std::optional<SurfaceShaders> light_shaders;  // these and the next two when first needed
-    GlHandle nothing, frame_buffer;
-    Target shadow, half, visibility, blurred;
+    GlHandle frame_buffer;
     PictureTargets bytes{GL_RGBA8}, light{GL_RGBA16F};
     Target layered;
     std::optional<LayerShaders> layer_shaders, triangle_shaders;
-    bool eye_is_outside = true;       // of the box of all that is drawn, in this picture
     Stopwatch* watch = nullptr;
 
     template <typename Pass>
@@ -146,28 +105,7 @@ struct Renderer::Parts {
         gl.Finish();
     }
 
-    void cover_screen() const {
-        gl.BindVertexArray(nothing.id());
-        gl.DrawArrays(GL_TRIANGLES, 0, 3);
-    }
-    void draw_ground() const {
-        gl.BindVertexArray(nothing.id());
-        gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    }
-    void draw_shapes(const Shader& shader, const std::vector<Drawable>& drawables) const {
-        shader.use();
-        for (const Drawable& d : drawables) {
-            shader.set_matrix("stage_from_mesh", glm::value_ptr(d.stage_from_mesh));
-            const Culling culling(gl, d.mesh->closed && eye_is_outside);
-            const auto count = static_cast<std::uint32_t>(d.mesh->split.index.size());
-            d.mesh->draw(gl, {-1, false, 0, count});
-        }
-    }
-
     std::vector<Drawable> prepare(const Picture& picture, Box& shown, Box& casting);
-    void draw_shadow(const std::vector<Drawable>& drawables) const;
-    void draw_depth(const std::vector<Drawable>& drawables, bool ground) const;
-    void draw_visibility() const;
     void draw_surfaces(const std::vector<Drawable>& drawables, bool ground, const Target& target,
                        const SurfaceShaders& by);
     const Target& target_of(PictureTargets& picture, bool multisampled);
@@ -194,61 +132,24 @@ std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& show
             textures.texture(material);
         }
         const GpuMesh& mesh = meshes.prepared(*item.mesh, item.position);
-        drawables.push_back({&mesh, &item, stage.from_mesh(item.world_from_mesh, mesh.origin)});
+        const glm::mat4 stage_from_mesh = stage.from_mesh(item.world_from_mesh, mesh.origin);
+        drawables.push_back({.mesh = &mesh, .item = &item, .stage_from_mesh = stage_from_mesh});
     }
     if (casting.empty()) casting.grow(stage.center);
     shown.grow(casting);
     return drawables;
 }
 
-void Renderer::Parts::draw_shadow(const std::vector<Drawable>& drawables) const {
-    shadow.bind(gl);
-    gl.Clear(GL_DEPTH_BUFFER_BIT);
-    gl.Enable(GL_DEPTH_CLAMP);  // what sticks out of the map towards the light still casts
-    gl.Enable(GL_POLYGON_OFFSET_FILL);
-    gl.PolygonOffset(1.5f, 2.0f);
-    std::vector<Drawable> casting;
-    std::copy_if(drawables.begin(), drawables.end(), std::back_inserter(casting),
-                 [](const Drawable& d) { return !d.item->endless; });
-    draw_shapes(shadow_shader, casting);
-    gl.Disable(GL_POLYGON_OFFSET_FILL);
-    gl.Disable(GL_DEPTH_CLAMP);
-}
-
-void Renderer::Parts::draw_depth(const std::vector<Drawable>& drawables, bool ground) const {
-    half.bind(gl);
-    gl.ClearColor(0, 0, 1, kNowhere);
-    gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    draw_shapes(depth_shader, drawables);
-    if (!ground) return;
-    ground_depth_shader.use();
-    draw_ground();
-}
-
-void Renderer::Parts::draw_visibility() const {
-    gl.Disable(GL_DEPTH_TEST);
-    visibility.bind(gl);
-    visibility_shader.use();
-    set_unit(gl, 0, half.color.id());
-    set_unit(gl, 1, shadow.depth.id());
-    cover_screen();
-    blurred.bind(gl);
-    blur_shader.use();
-    set_unit(gl, 0, visibility.color.id());
-    cover_screen();
-    gl.Enable(GL_DEPTH_TEST);
-}
-
 void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool ground,
                                     const Target& target, const SurfaceShaders& by) {
     target.bind(gl);
     gl.Clear(GL_DEPTH_BUFFER_BIT);  // the backdrop covers every pixel
-    set_unit(gl, 0, blurred.color.id());
+    set_unit(gl, 0, visibility.result());
     static const SurfaceMaterial plain_material;
     for (const Drawable& d : drawables) {
         const TriMesh& mesh = *d.item->mesh;
         const glm::vec4 endless = d.item->endless ? disc_of(*d.item, stage) : glm::vec4(0);
-        const Culling culling(gl, d.mesh->closed && eye_is_outside);
+        const Culling culling(gl, d.culls);
         for (const DrawMesh::Range& range : d.mesh->split.range) {
             const bool named =
                 range.material >= 0 && range.material < static_cast<int>(mesh.material.size());
@@ -273,11 +174,11 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
     }
     if (ground) {
         by.ground.use();
-        draw_ground();
+        bare.draw_ground();
     }
     gl.DepthFunc(GL_LEQUAL);
     by.backdrop.use();
-    cover_screen();
+    bare.cover_screen();
     gl.DepthFunc(GL_LESS);
 }
 
@@ -311,7 +212,7 @@ const Target& Renderer::Parts::whole_picture(PictureTargets& picture, bool multi
     picture.smoothed.bind(gl);
     smooth.use();
     set_unit(gl, 0, plain.color.id());
-    cover_screen();
+    bare.cover_screen();
     gl.Enable(GL_DEPTH_TEST);
     return picture.smoothed;
 }
@@ -371,13 +272,13 @@ std::vector<float> Renderer::Parts::draw_flat(const Picture& picture,
     };
     for (const Drawable& d : drawables) {
         set_number(by.layer, static_cast<int>(d.item - picture.item.data()));
-        draw_shapes(by.layer, {d});
+        draw_shapes(gl, by.layer, {d});
     }
     // The ground and what stands for it go on to the horizon.
     const auto draw_plane = [&](const glm::vec4& plane, int item) {
         set_number(by.horizon, item);
         by.horizon.set4("plane", glm::value_ptr(plane));
-        cover_screen();
+        bare.cover_screen();
     };
     gl.DepthFunc(GL_LEQUAL);
     for (const Drawable& d : drawables) {
@@ -433,7 +334,8 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
         static_cast<long>(settings.width) * settings.height <= kMostMultisampledPixels;
 
     const View view = camera.at(picture.film_share);
-    eye_is_outside = !shown.contains(view.eye);
+    const bool eye_is_outside = !shown.contains(view.eye);
+    for (Drawable& d : drawables) d.culls = d.mesh->closed && eye_is_outside;
     const FrameBlock frame =
         frame_block(settings, stage, shown, casting, view, ground_height, front);
     gl.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer.id());
@@ -446,9 +348,9 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
 
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);
-    timed("shadow", [&] { draw_shadow(drawables); });
-    timed("depth", [&] { draw_depth(drawables, ground); });
-    timed("visibility", [&] { draw_visibility(); });
+    timed("shadow", [&] { visibility.draw_shadow(drawables); });
+    timed("depth", [&] { visibility.draw_depth(drawables, ground); });
+    timed("visibility", [&] { visibility.draw_visibility(); });
     timed("surfaces", [&] {
         draw_surfaces(drawables, ground, target_of(bytes, multisampled), surface_shaders);
     });
