@@ -51,6 +51,33 @@ NewtonProblem problem_of(StaticForces& forces, const Drive& to, double accuracy,
     return problem;
 }
 
+// Whether the matter itself gives way is asked by it, and not whether it can slide in its grips.
+NewtonProblem firm_problem(StaticForces& forces, const Drive& to, double accuracy) {
+    NewtonProblem problem = problem_of(forces, to, accuracy, RestingContacts::Slipping::held);
+    for (HeldPoint& h : problem.held) {
+        const Eigen::SelfAdjointEigenSolver<Mat3> ways(h.stiffness, Eigen::EigenvaluesOnly);
+        h.stiffness = ways.eigenvalues().maxCoeff() * Mat3::Identity();
+    }
+    return problem;
+}
+
+// To either side along this way, as far as the forces drive the body there.
+void go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
+    Vec3Array& x = forces.matter.particle_position;
+    const double a = forces.matter.lattice.spacing, longest = longest_of(way);
+    const Vec3Array from = x;
+    const auto work_at = [&](double far) {
+        x = from;
+        combine(1, far / longest, way, x);
+        forces.find(to);
+        return far > 0 ? dot(forces.force, way) : -dot(forces.force, way);
+    };
+    double far = kNudge * a;
+    if (work_at(-far) > work_at(far)) far = -far;
+    while (std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
+    work_at(far);
+}
+
 // What is in some grip, or all, has gone [m]: other pieces go anywhere.
 double farthest(const StaticForces& forces, const Vec3Array& from) {
     Vec3Array gone = forces.matter.particle_position;
@@ -146,7 +173,6 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
     newton_rests_ = std::max(0, newton_rests_ - 1);
     const Aggregate& matter = forces.matter;
     Vec3Array& x = forces.matter.particle_position;
-    const double a = matter.lattice.spacing;
     double accuracy = tolerance_;
     Relaxation result = relax(forces, move, accuracy);
     const auto again = [&](double wanted) {
@@ -175,14 +201,8 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
     }
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(forces.apparatus) || forces.self.presses()) break;
-        NewtonProblem problem =
-            problem_of(forces, move.to, accuracy, RestingContacts::Slipping::held);
+        const NewtonProblem problem = firm_problem(forces, move.to, accuracy);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
-        // Whether the matter itself gives way is asked, and not whether it can slide in its grips.
-        for (HeldPoint& h : problem.held) {
-            const Eigen::SelfAdjointEigenSolver<Mat3> ways(h.stiffness, Eigen::EigenvaluesOnly);
-            h.stiffness = ways.eigenvalues().maxCoeff() * Mat3::Identity();
-        }
         if (!newton_->buckles(matter, problem)) {
             if (forces.touches() || accuracy < kFinest * tolerance_) break;
             const double hold = std::exchange(forces.hold, 0);  // it holds back what is left over
@@ -193,19 +213,7 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
             continue;
         }
         ++turn;
-        const Vec3Array way = newton_->softest_motion();
-        const double longest = longest_of(way);
-        const Vec3Array from = x;
-        const auto work_at = [&](double far) {
-            x = from;
-            combine(1, far / longest, way, x);
-            forces.find(move.to);
-            return far > 0 ? dot(forces.force, way) : -dot(forces.force, way);
-        };
-        double far = kNudge * a;
-        if (work_at(-far) > work_at(far)) far = -far;
-        while (std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
-        work_at(far);
+        go_along(forces, move.to, newton_->softest_motion());
         move.rest = x;
         again(std::clamp(kDriven * forces.residual_of(forces.force, move.to), kFinest * tolerance_,
                          tolerance_));
