@@ -48,14 +48,31 @@ SurfaceDepth interpolate_depth(const std::array<float, 8>& d, const Vec3& p) {
 
 RestSurface::RestSurface(const Aggregate& matter) {
     const Lattice& lattice = matter.lattice;
+    bin_points(matter);
+    std::vector<Vec3i> site_of_bin;
+    for (const Site& bin : bin_) {
+        site_of_bin.push_back(floor_of(point_[bin.first] - 1e-3 * normal_[bin.first]));
+    }
+    if (!bin_.empty()) index_rows(site_of_bin);
+    const std::vector<CellId> rim = find_rim(lattice, site_of_bin);
+    measure_corners(lattice);
+    std::vector<char> is_fine(rim.size());
+    find_fine(is_fine);
+    measure_fine(lattice, is_fine);
+    for (std::size_t n = 0; n < rim.size(); ++n) {
+        const auto& c = corner_[n];
+        const bool shallow = *std::max_element(c.begin(), c.end()) > -kDeep;
+        if (shallow || is_fine[n]) skin_.push_back(rim[n]);
+    }
+}
+
+void RestSurface::bin_points(const Aggregate& matter) {
+    const Lattice& lattice = matter.lattice;
     const SurfacePoints& surface = matter.surface;
-    const CellRun& last = lattice.cell_run.back();
-    slot_.assign(last.first + last.count, -1);
-    const double a = lattice.spacing;
     std::vector<Vec3> place;
     std::vector<std::uint64_t> key;
     for (std::size_t p = 0; p < surface.size(); ++p) {
-        place.push_back((matter.surface_reference(p) - lattice.origin) / a);
+        place.push_back((matter.surface_reference(p) - lattice.origin) / lattice.spacing);
         // A point on a face between bins belongs to the inner one.
         const Vec3 inner = place.back() - 1e-3 * surface.normal(p);
         key.push_back(key_of(floor_of(inner)));
@@ -71,25 +88,27 @@ RestSurface::RestSurface(const Aggregate& matter) {
         point_.push_back(place[p]);
         normal_.push_back(surface.normal(p));
     }
+}
 
-    std::vector<Vec3i> site_of_bin;
-    for (const Site& bin : bin_) {
-        site_of_bin.push_back(floor_of(point_[bin.first] - 1e-3 * normal_[bin.first]));
+void RestSurface::index_rows(const std::vector<Vec3i>& site_of_bin) {
+    Vec3i high = row_low_ = site_of_bin[0];
+    for (const Vec3i& s : site_of_bin) {
+        row_low_ = row_low_.cwiseMin(s);
+        high = high.cwiseMax(s);
     }
-    if (!bin_.empty()) {
-        Vec3i high = row_low_ = site_of_bin[0];
-        for (const Vec3i& s : site_of_bin) {
-            row_low_ = row_low_.cwiseMin(s);
-            high = high.cwiseMax(s);
-        }
-        row_count_ = high - row_low_ + Vec3i::Ones();
-        for (std::size_t n = 0; n < bin_.size(); ++n) {
-            const Vec3i at = site_of_bin[n] - row_low_;
-            row_.resize(std::size_t(at.z() * row_count_.y() + at.y() + 1), int(n));
-        }
-        row_.resize(std::size_t(row_count_.y() * row_count_.z() + 1), int(bin_.size()));
+    row_count_ = high - row_low_ + Vec3i::Ones();
+    for (std::size_t n = 0; n < bin_.size(); ++n) {
+        const Vec3i at = site_of_bin[n] - row_low_;
+        row_.resize(std::size_t(at.z() * row_count_.y() + at.y() + 1), int(n));
     }
+    row_.resize(std::size_t(row_count_.y() * row_count_.z() + 1), int(bin_.size()));
+}
 
+// The cells around the bins, in their order: each gets a slot.
+std::vector<CellId> RestSurface::find_rim(const Lattice& lattice,
+                                          const std::vector<Vec3i>& site_of_bin) {
+    const CellRun& last = lattice.cell_run.back();
+    slot_.assign(last.first + last.count, -1);
     std::vector<CellId> rim;
     for (const Vec3i& site : site_of_bin) {
         for (int k = -kRings; k <= kRings; ++k) {
@@ -110,15 +129,7 @@ RestSurface::RestSurface(const Aggregate& matter) {
         while (cell >= run->first + run->count) ++run;
         site_.emplace_back(run->i + cell - run->first, run->j, run->k);
     }
-    measure_corners(lattice);
-    std::vector<char> is_fine(rim.size());
-    find_fine(is_fine);
-    measure_fine(lattice, is_fine);
-    for (std::size_t n = 0; n < rim.size(); ++n) {
-        const auto& c = corner_[n];
-        const bool shallow = *std::max_element(c.begin(), c.end()) > -kDeep;
-        if (shallow || is_fine[n]) skin_.push_back(rim[n]);
-    }
+    return rim;
 }
 
 // Points within `reach` of the box.

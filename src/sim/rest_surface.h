@@ -72,6 +72,9 @@ class RestSurface {
         std::vector<int> point;  // in their order
         double reach;            // all within it of any place asked about are there
     };
+    void bin_points(const Aggregate& matter);
+    void index_rows(const std::vector<Vec3i>& site_of_bin);
+    std::vector<CellId> find_rim(const Lattice& lattice, const std::vector<Vec3i>& site_of_bin);
     void gather(const Vec3& low, const Vec3& high, double reach, Near& near) const;
     // Of a place as far as `near` tells; no number where it does not reach.
     double distance(const Vec3& g, const Near& near) const;
