@@ -141,10 +141,41 @@ void sweep_slab(CellKind kind, SlabTask& task) {
     });
 }
 
+// How stiff a cell may be on a particle of its own [N/m]: by itself, and as one of eight.
+struct StiffnessBound {
+    double alone = 0, among = 0;
+};
+// The mean strain's share is bounded by the largest eigenvalue of Hooke's law times that of the
+// gradient's Gram matrix, which grows as the centroid leaves the middle; the modes' by the largest
+// of the blocks in laws/cell.h. What has flowed is `thin` times as stiff: as its edges are shorter,
+// squared, at the most by the greatest eigenvalue of A^2, that by the sums of A's rows.
+StiffnessBound stiffness_bound(const CellModuli& law, double fill, const Eigen::Vector3f& centroid,
+                               double thin) {
+    const double alone = std::max(2 * law.shear, 3 * law.bulk);
+    const double among = kAssembledShear * 2 * law.shear + kAssembledBulk * 3 * law.bulk;
+    const double modes = 8 * std::max(law.edge + 2 * law.diagonal, 4 * law.diagonal);
+    const Vec3 at = 2 * centroid.cast<double>();
+    const bool centred = at == Vec3::Zero();
+    double gram = 1;  // times 1 / (2 a^2)
+    if (!centred) {
+        Mat3 g;
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            g(i, i) = (1 + at[j] * at[j]) * (1 + at[k] * at[k]);
+            g(i, j) = g(j, i) = at[i] * at[j] * (1 + at[k] * at[k]);
+        }
+        gram = g.cwiseAbs().rowwise().sum().maxCoeff();
+    }
+    const double mean = 0.5 * fill * law.spacing * gram, own = mode_fill(fill) * modes;
+    const auto of = [&](double hooke) {
+        return centred ? std::max(mean * hooke, own) : mean * hooke + own;
+    };
+    return {thin * of(alone), thin * of(among)};
+}
+
 template <typename Act>
-void for_each_cell(const Aggregate& matter, std::size_t begin, std::size_t end, const Act& act) {
-    for (std::size_t r = begin; r < end; ++r) {
-        const CellRun& run = matter.lattice.cell_run[r];
+void for_each_cell(const Aggregate& matter, const Act& act) {
+    for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) act(run, n, run.first + n);
     }
 }
@@ -162,15 +193,14 @@ CellSweep::CellSweep(const Aggregate& matter)
 void CellSweep::cells_changed(const Aggregate& matter, std::vector<TurnedCell>* turned) {
     const std::vector<float> carried = turned ? fill_ : std::vector<float>();
     fill_ = matter.cell_fill;
-    for_each_cell(matter, 0, matter.lattice.cell_run.size(),
-                  [&](const CellRun& run, int n, CellId cell) {
-                      if (cell_is_sound(matter, cell, run.row_at(n))) return;
-                      fill_[cell] = 0;
-                      if (turned && carried[cell] > 0) {
-                          const bool one = matter.mixed_at(cell) == nullptr;
-                          turned->push_back({&run, n, one ? energy_of(matter, run, n) : 0});
-                      }
-                  });
+    for_each_cell(matter, [&](const CellRun& run, int n, CellId cell) {
+        if (cell_is_sound(matter, cell, run.row_at(n))) return;
+        fill_[cell] = 0;
+        if (turned && carried[cell] > 0) {
+            const bool one = matter.mixed_at(cell) == nullptr;
+            turned->push_back({&run, n, one ? energy_of(matter, run, n) : 0});
+        }
+    });
     mixed_.cells_changed(matter, fill_);
     swept_.clear();
     if (!matter.mixed_cell.empty()) swept_ = fill_;
@@ -244,64 +274,33 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     mixed_.add_forces(matter, laws, force);
 }
 
-// Of one cell: the mean strain's share is bounded by the largest eigenvalue of Hooke's law times
-// that of the gradient's Gram matrix, which grows as the centroid leaves the middle; the modes' by
-// the largest of the blocks in laws/cell.h. The fewer cells a particle has, the less they hold each
-// other back. Of two materials in a cell the bounds add up: the jump between them only softens.
-// What has flowed is as much stiffer as its edges are shorter, squared: at the most by the greatest
-// eigenvalue of A^2, that by the sums of A's rows.
+// The fewer cells a particle has, the less they hold each other back. Of two materials in a cell
+// the bounds add up: the jump between them only softens.
 void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const {
-    const double a = matter.lattice.spacing;
     std::vector<double> held_back(bound.size(), 0.0);
     std::vector<char> cells(bound.size(), 0);
-    struct Bound {
-        double most = 0, less = 0;
-    };
-    const auto bound_of = [&](const CellModuli& law, double fill, const Eigen::Vector3f& centroid,
-                              double thin) {
-        const double alone = std::max(2 * law.shear, 3 * law.bulk);
-        const double among = kAssembledShear * 2 * law.shear + kAssembledBulk * 3 * law.bulk;
-        const double modes = 8 * std::max(law.edge + 2 * law.diagonal, 4 * law.diagonal);
-        const Vec3 at = 2 * centroid.cast<double>();
-        const bool centred = at == Vec3::Zero();
-        double gram = 1;  // times 1 / (2 a^2)
-        if (!centred) {
-            Mat3 g;
-            for (int i = 0; i < 3; ++i) {
-                const int j = (i + 1) % 3, k = (i + 2) % 3;
-                g(i, i) = (1 + at[j] * at[j]) * (1 + at[k] * at[k]);
-                g(i, j) = g(j, i) = at[i] * at[j] * (1 + at[k] * at[k]);
-            }
-            gram = g.cwiseAbs().rowwise().sum().maxCoeff();
+    for_each_cell(matter, [&](const CellRun& run, int n, CellId cell) {
+        if (fill_[cell] <= 0) return;
+        const MixedCell* two = matter.mixed_at(cell);
+        StiffnessBound own;
+        if (two == nullptr) {
+            own =
+                stiffness_bound(law_of(matter, cell).moduli, fill_[cell],
+                                matter.cell_centroid[cell], thinned(flowed_stretch(matter, cell)));
         }
-        const double mean = 0.5 * fill * a * gram, own = mode_fill(fill) * modes;
-        const auto of = [&](double hooke) {
-            return centred ? std::max(mean * hooke, own) : mean * hooke + own;
-        };
-        return Bound{thin * of(alone), thin * of(among)};
-    };
-    for_each_cell(
-        matter, 0, matter.lattice.cell_run.size(), [&](const CellRun& run, int n, CellId cell) {
-            if (fill_[cell] <= 0) return;
-            const MixedCell* two = matter.mixed_at(cell);
-            Bound own;
-            if (two == nullptr) {
-                own = bound_of(law_of(matter, cell).moduli, fill_[cell], matter.cell_centroid[cell],
-                               thinned(flowed_stretch(matter, cell)));
-            }
-            for (int m = 0; m < 2 && two != nullptr; ++m) {
-                const Bound part = bound_of(
-                    law_[two->material[m]].moduli, two->fill[m], two->centroid[m],
-                    thinned(flowed_stretch([&](int n) { return double(two->flowed[m][n]); })));
-                own.most += part.most, own.less += part.less;
-            }
-            for (int c = 0; c < 8; ++c) {
-                const ParticleId p = run.row[c >> 1] + n + (c & 1);
-                bound[p] += own.most;
-                held_back[p] += own.most - own.less;
-                ++cells[p];
-            }
-        });
+        for (int m = 0; m < 2 && two != nullptr; ++m) {
+            const StiffnessBound part = stiffness_bound(
+                law_[two->material[m]].moduli, two->fill[m], two->centroid[m],
+                thinned(flowed_stretch([&](int s) { return double(two->flowed[m][s]); })));
+            own.alone += part.alone, own.among += part.among;
+        }
+        for (int c = 0; c < 8; ++c) {
+            const ParticleId p = run.row[c >> 1] + n + (c & 1);
+            bound[p] += own.alone;
+            held_back[p] += own.alone - own.among;
+            ++cells[p];
+        }
+    });
     for (std::size_t p = 0; p < bound.size(); ++p) bound[p] -= cells[p] / 8.0 * held_back[p];
 }
 
