@@ -5,23 +5,11 @@
 // Lanes past the end of a run hold what stands in memory behind it, and what they get is dropped.
 #pragma once
 
-#include <cstring>
-
 #include "laws/cell.h"
 #include "sim/force_slabs.h"
+#include "sim/lane_memory.h"
 
 namespace swage {
-
-template <typename V>
-SWAGE_INLINE V load(const double* from) {
-    V v;
-    std::memcpy(&v, from, sizeof v);
-    return v;
-}
-template <typename V>
-SWAGE_INLINE V load(const float* from) {
-    return widened<V>(from);
-}
 
 // A vector field along the four particle rows of a run, by component: where the low ends of a cell
 // are. They may be read up to `room` particles from there on.
@@ -118,18 +106,14 @@ SWAGE_INLINE void add_forces(const CornerSums<V>& r, const CornerForces& rows, i
             const V from_left = __builtin_shuffle(carry.high[i][q], high, shift);
             carry.high[i][q] = high;
             double* to = rows.at[i][q] + begin;
-            V old;
             if (count >= kWidth) [[likely]] {
-                std::memcpy(&old, to, sizeof old);
-                old += low + from_left;
-                std::memcpy(to, &old, sizeof old);
+                store(V(load<V>(to) + (low + from_left)), to);
             } else {
                 // Also the particle behind the run's last cell.
                 const V sum = lane < count ? low + from_left : from_left;
                 if (begin + kWidth <= rows.room[q]) {
-                    std::memcpy(&old, to, sizeof old);
-                    old = lane <= count ? old + sum : old;
-                    std::memcpy(to, &old, sizeof old);
+                    const V old = load<V>(to);
+                    store(V(lane <= count ? old + sum : old), to);
                 } else {
                     for (int l = 0; l <= count; ++l) to[l] += sum[l];
                 }

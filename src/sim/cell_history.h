@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include "laws/cell_back.h"
 #include "matter/aggregate.h"

@@ -2,7 +2,6 @@
 #include "sim/cell_tangent.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/parallel.h"
 #include "laws/cell_forces.h"
@@ -96,13 +95,11 @@ struct MatrixTask : Task {
 // Some of eight lanes.
 template <typename V>
 SWAGE_INLINE V part_of(const Lanes& all, int first) {
-    V part;
-    std::memcpy(&part, reinterpret_cast<const double*>(&all) + first, sizeof part);
-    return part;
+    return load<V>(reinterpret_cast<const double*>(&all) + first);
 }
 template <typename V>
 SWAGE_INLINE void put_part(const V& part, Lanes& all, int first) {
-    std::memcpy(reinterpret_cast<double*>(&all) + first, &part, sizeof part);
+    store(part, reinterpret_cast<double*>(&all) + first);
 }
 
 template <CellKind kKind, int kWidth>

@@ -2,8 +2,6 @@
 #include "sim/cell_volume.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 
 #include "base/parallel.h"
 #include "sim/cell_batch.h"
@@ -35,7 +33,7 @@ SWAGE_INLINE void find_volumes(const VolumeTask& task) {
     for (int begin = 0; begin < task.count; begin += kWidth) {
         const int count = std::min(kWidth, task.count - begin);
         const V volume = task.scale * batch_volumes<V>(task.rows, begin, count);
-        std::memcpy(task.volume + begin, &volume, sizeof volume);
+        store(volume, task.volume + begin);
     }
 }
 

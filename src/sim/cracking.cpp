@@ -90,7 +90,7 @@ void strain_measures(const Aggregate& matter, const CellRun& run, std::vector<do
     for (int begin = 0; begin < run.count; begin += kFewLanes) {
         const int count = std::min(kFewLanes, run.count - begin);
         const FewLanes m = strain_measure(gather<FewLanes>(rows, begin, count), gram, kAnywhere);
-        std::memcpy(measure.data() + begin, &m, sizeof m);
+        store(m, measure.data() + begin);
     }
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "sim/cell_batch.h"
+#include "sim/lane_memory.h"
 #include "sim/lattice_sweep.h"
 #include "sim/vector_clones.h"
 

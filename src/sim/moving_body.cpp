@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "base/portable_math.h"
-#include "sim/cell_batch.h"
 #include "sim/crushed_cells.h"
+#include "sim/lane_memory.h"
 #include "sim/vector_clones.h"
 #include "sim/vector_sums.h"
 
@@ -51,8 +50,8 @@ double move_block(const Movers& m, std::size_t begin, std::size_t end, double ki
             const FewLanes v =
                 load<FewLanes>(at.v[i] + p) + (push * load<FewLanes>(at.f[i] + p) + kick * fall[i]);
             const FewLanes x = load<FewLanes>(at.x[i] + p) + step * v;
-            std::memcpy(at.v[i] + p, &v, sizeof v);
-            std::memcpy(at.x[i] + p, &x, sizeof x);
+            store(v, at.v[i] + p);
+            store(x, at.x[i] + p);
             speed += v * v;
             wrong += x - x;
         }

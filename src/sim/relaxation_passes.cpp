@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "sim/cell_batch.h"
+#include "sim/lane_memory.h"
 #include "sim/vector_clones.h"
 #include "sim/vector_sums.h"
 
@@ -29,7 +29,7 @@ SWAGE_INLINE FewLanes some(const double* from, std::size_t count) {
 }
 SWAGE_INLINE void put_some(const FewLanes& value, std::size_t count, double* to) {
     if (count >= std::size_t(kFewLanes)) {
-        std::memcpy(to, &value, sizeof value);
+        store(value, to);
     } else {
         std::memcpy(to, &value, count * sizeof(double));
     }

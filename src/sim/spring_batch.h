@@ -9,7 +9,7 @@
 
 #include "laws/inverse_root.h"
 #include "laws/spring_damper.h"
-#include "sim/cell_batch.h"
+#include "sim/lane_memory.h"
 #include "sim/lattice_sweep.h"
 
 namespace swage {
