@@ -154,7 +154,7 @@ std::size_t Aggregate::bytes() const {
 
 bool cell_is_whole(const Aggregate& matter, const std::array<ParticleId, 4>& row) {
     for (const CellConnection& c : kCellConnection) {
-        if (matter.connection[c.direction].weight[row[c.corner >> 1] + (c.corner & 1)] <= 0) {
+        if (matter.connection[c.direction].weight[corner_particle(row, c.corner)] <= 0) {
             return false;
         }
     }

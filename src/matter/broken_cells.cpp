@@ -16,7 +16,7 @@ bool cell_has_broken(const Aggregate& matter, CellId cell, const std::array<Part
     return !cell_is_whole(matter, row) &&
            std::any_of(kCellConnection.begin(), kCellConnection.end(), [&](const auto& c) {
                const std::vector<float>& damage = matter.connection[c.direction].damage;
-               return !damage.empty() && damage[row[c.corner >> 1] + (c.corner & 1)] > 0;
+               return !damage.empty() && damage[corner_particle(row, c.corner)] > 0;
            });
 }
 

@@ -186,7 +186,7 @@ std::vector<CellId> Lattice::cells_by_low_corner() const {
 std::array<ParticleId, 8> Lattice::cell_corners(CellId cell) const {
     const std::array<ParticleId, 4> row = cell_row(cell);
     std::array<ParticleId, 8> corner;
-    for (int c = 0; c < 8; ++c) corner[c] = row[c >> 1] + (c & 1);
+    for (int c = 0; c < 8; ++c) corner[c] = corner_particle(row, c);
     return corner;
 }
 

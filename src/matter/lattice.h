@@ -84,6 +84,12 @@ struct Span {
     int count;
 };
 
+// The particle at corner c of the cell whose first particles in its four rows these are: bit 0 of c
+// is along x, bit 1 along y, bit 2 along z.
+inline ParticleId corner_particle(const std::array<ParticleId, 4>& row, int c) {
+    return row[c >> 1] + (c & 1);
+}
+
 // Consecutive cells along x. Cell n has the particles row[0] + n and + n + 1 at (y, z), row[1] at
 // (y + 1, z), row[2] at (y, z + 1), row[3] at (y + 1, z + 1).
 struct CellRun {
@@ -96,6 +102,8 @@ struct CellRun {
     std::array<ParticleId, 4> row_at(int n) const {
         return {row[0] + n, row[1] + n, row[2] + n, row[3] + n};
     }
+    // The particle at corner c of cell n.
+    ParticleId corner(int n, int c) const { return corner_particle(row, c) + n; }
 };
 
 // Those of one (y, z), of runs in the order of a lattice's.

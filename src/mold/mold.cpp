@@ -86,7 +86,7 @@ void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Agg
         for (int n = 0; n < run.count; ++n, ++in_layer) {
             while (in_layer == layer->share.size()) ++layer, in_layer = 0;
             const double fill = layer->share[in_layer].fill;
-            const auto corner = [&](int c) { return run.row[c >> 1] + n + (c & 1); };
+            const auto corner = [&](int c) { return run.corner(n, c); };
             const double own = matter.inset.empty()
                                    ? corner_mass * fill
                                    : corner_volume * fill * density_of(matter, run.first + n);

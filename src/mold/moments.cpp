@@ -115,7 +115,7 @@ void carry_to_centroids(const std::vector<double>& least, Aggregate& matter) {
     for (auto& along : flux) along.assign(matter.particle_count(), 0.0);
     for_each_part(matter, [&](const CellRun& run, int n, const Part& part) {
         for (int c = 0; c < 8; ++c) {
-            const ParticleId p = run.row[c >> 1] + n + (c & 1);
+            const ParticleId p = run.corner(n, c);
             for (int axis = 0; axis < 3; ++axis) {
                 if ((c >> axis & 1) == 0) flux[axis][p] += part.mass * part.centroid[axis] / 4;
             }

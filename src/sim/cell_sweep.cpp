@@ -295,7 +295,7 @@ void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>
             own.alone += part.alone, own.among += part.among;
         }
         for (int c = 0; c < 8; ++c) {
-            const ParticleId p = run.row[c >> 1] + n + (c & 1);
+            const ParticleId p = run.corner(n, c);
             bound[p] += own.alone;
             held_back[p] += own.alone - own.among;
             ++cells[p];

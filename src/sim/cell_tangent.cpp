@@ -291,7 +291,7 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
                     do_task(law.kind, task);
                     for (int l = 0; l < kLanes && done + l < run.count; ++l) {
                         for (int c = 0; c < 8; ++c) {
-                            Mat3& to = own[run.row[c >> 1] + done + l + (c & 1)];
+                            Mat3& to = own[run.corner(done + l, c)];
                             for (int i = 0; i < 3; ++i) {
                                 for (int j = 0; j < 3; ++j) {
                                     const int place = CellMatrix::place(3 * c + std::min(i, j),

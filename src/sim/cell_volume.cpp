@@ -124,7 +124,7 @@ void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count
 Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n) {
     Mat3 gradient = Mat3::Zero();
     for (int c = 0; c < 8; ++c) {
-        const Vec3 x = matter.particle_position.at(run.row[c >> 1] + n + (c & 1));
+        const Vec3 x = matter.particle_position.at(run.corner(n, c));
         for (int axis = 0; axis < 3; ++axis) {
             gradient.col(axis) += (c >> axis & 1 ? 0.25 : -0.25) / matter.lattice.spacing * x;
         }
@@ -136,7 +136,7 @@ CornerSums<double> corner_sums(const Aggregate& matter, const CellRun& run, int 
     const Vec3Array& x = matter.particle_position;
     double at[3][8];
     for (int c = 0; c < 8; ++c) {
-        const ParticleId p = run.row[c >> 1] + n + (c & 1);
+        const ParticleId p = run.corner(n, c);
         at[0][c] = x.x[p], at[1][c] = x.y[p], at[2][c] = x.z[p];
     }
     return sum_corners(at);

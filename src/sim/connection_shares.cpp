@@ -42,7 +42,7 @@ ConnectionShares::ConnectionShares(const Aggregate& matter, const MaterialMask& 
                 own[d] = static_cast<float>(share * stiffness_in(matter, cell, two, d, counts));
             }
             for (const auto& [direction, corner] : kCellConnection) {
-                share_[direction][run.row[corner >> 1] + n + (corner & 1)] += own[direction];
+                share_[direction][run.corner(n, corner)] += own[direction];
             }
         }
     }

@@ -48,7 +48,7 @@ void find_contacts(const ContactSide& from, const ContactSide& onto, double marg
         while (id >= run->first + run->count) ++run;
         const int n = id - run->first;
         std::array<ParticleId, 8> c;
-        for (int q = 0; q < 8; ++q) c[q] = run->row[q >> 1] + n + (q & 1);
+        for (int q = 0; q < 8; ++q) c[q] = run->corner(n, q);
         const Box one = box_of_cell(other.particle_position, c);
         if (!one.overlaps(all)) continue;
         cell.push_back(id);

@@ -98,9 +98,9 @@ double largest_connection_strain(const Aggregate& matter, const std::array<Parti
     const Vec3Array& x = matter.particle_position;
     double largest = 0;
     for (const CellConnection& c : kCellConnection) {
-        const ParticleId lower = row[c.corner >> 1] + (c.corner & 1);
+        const ParticleId lower = corner_particle(row, c.corner);
         const int high = upper_corner(c);
-        const ParticleId upper = row[high >> 1] + (high & 1);
+        const ParticleId upper = corner_particle(row, high);
         const double rest = reference_length(matter.lattice, c.direction) *
                             (1 + matter.connection[c.direction].plastic_of(lower));
         largest = std::max(largest, (x.at(upper) - x.at(lower)).squaredNorm() / (rest * rest));

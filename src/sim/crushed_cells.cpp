@@ -131,7 +131,7 @@ int resist(const Aggregate& matter, Flow flow, const std::vector<SmallCell>& sma
         double own[3][8];
         spread_corners(Crushed(matter, laws, cell).forces(), own);
         for (int c = 0; c < 8; ++c) {
-            force.add(cell.run->row[c >> 1] + cell.n + (c & 1), {own[0][c], own[1][c], own[2][c]});
+            force.add(cell.run->corner(cell.n, c), {own[0][c], own[1][c], own[2][c]});
         }
     }
     return mirrored;
@@ -172,7 +172,7 @@ double calm_crushed(Aggregate& matter, double keep) {
         double mass = 0;
         Vec3 center = Vec3::Zero(), drift = Vec3::Zero();
         for (int c = 0; c < 8; ++c) {
-            p[c] = static_cast<std::size_t>(cell.run->row[c >> 1] + cell.n + (c & 1));
+            p[c] = static_cast<std::size_t>(cell.run->corner(cell.n, c));
             const double m = matter.particle_mass[p[c]];
             mass += m;
             center += m * matter.particle_position.at(p[c]);
@@ -206,7 +206,7 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
     const std::vector<MaterialLaw> laws = guard_laws(matter, Flow::none);
     const double a = matter.lattice.spacing;
     const auto add = [&](const CellRun& run, int n, double own) {
-        for (int c = 0; c < 8; ++c) stiffness[run.row[c >> 1] + n + (c & 1)] += own;
+        for (int c = 0; c < 8; ++c) stiffness[run.corner(n, c)] += own;
     };
     for (const SmallCell& cell : cells_below(matter, 0)) {
         const CellModuli& law = laws[matter.material_number(cell.id())].moduli;

@@ -56,7 +56,7 @@ FractureLaws::FractureLaws(const Aggregate& matter) {
                     most = std::max(most, 1 / give(*two, two->material[p]));
             }
             for (const auto& [direction, corner] : kCellConnection) {
-                const ParticleId lower = run.row[corner >> 1] + n + (corner & 1);
+                const ParticleId lower = run.corner(n, corner);
                 const Part own = two ? part_in(*two, direction) : part_in(matter, cell, nullptr);
                 Part& part = part_[direction][lower];
                 part = std::exchange(is_known[direction][lower], 1) ? both(part, own) : own;

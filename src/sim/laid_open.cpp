@@ -31,7 +31,7 @@ std::vector<OpenFace> laid_open(const Aggregate& matter) {
             std::clamp(matter.cell_fill[run.first + n] - (side ? leaning : -leaning), 0.0, 1.0);
         if (share == 0) return;
         const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, low = side << axis;
-        const auto corner = [&](int c) { return run.row[c >> 1] + n + (c & 1); };
+        const auto corner = [&](int c) { return run.corner(n, c); };
         OpenFace& open = faces.emplace_back();
         open.corner = {corner(low), corner(low | u), corner(low | u | v), corner(low | v)};
         if (side == 0) std::swap(open.corner[1], open.corner[3]);

@@ -28,10 +28,9 @@ NodeStiffness::NodeStiffness(const Lattice& lattice) {
     for (const CellRun& run : lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
             for (int a = 0; a < 8; ++a) {
-                const ParticleId p = run.row[a >> 1] + n + (a & 1);
+                const ParticleId p = run.corner(n, a);
                 for (int b = 0; b < 8; ++b) {
-                    neighbour_[std::size_t(p) * kNear + near_of(a, b)] =
-                        run.row[b >> 1] + n + (b & 1);
+                    neighbour_[std::size_t(p) * kNear + near_of(a, b)] = run.corner(n, b);
                 }
             }
         }
@@ -46,7 +45,7 @@ void NodeStiffness::add_cells(const Lattice& lattice, const std::vector<CellMatr
         for (int n = 0; n < run.count; ++n) {
             const CellMatrix& cell = cells[run.first + n];
             for (int a = 0; a < 8; ++a) {
-                const ParticleId p = run.row[a >> 1] + n + (a & 1);
+                const ParticleId p = run.corner(n, a);
                 for (int b = 0; b < 8; ++b) {
                     Mat3& block = block_[std::size_t(p) * kNear + near_of(a, b)];
                     for (int i = 0; i < 3; ++i) {

@@ -69,8 +69,8 @@ double spring_stress(const Aggregate& matter, CellId cell, const std::array<Part
     for (int slot = 0; slot < kCellConnectionCount; ++slot) {
         const CellConnection& c = kCellConnection[slot];
         const int high = upper_corner(c);
-        const Vec3 way = (matter.particle_position.at(row[high >> 1] + (high & 1)) -
-                          matter.particle_position.at(row[c.corner >> 1] + (c.corner & 1))) /
+        const Vec3 way = (matter.particle_position.at(corner_particle(row, high)) -
+                          matter.particle_position.at(corner_particle(row, c.corner))) /
                          reference_length(matter.lattice, c.direction);
         springs.way[slot] = {way.x(), way.y(), way.z()};
         const auto& plastic = matter.cell_plastic[slot];

@@ -33,7 +33,7 @@ std::vector<SliverCorner> sliver_corners(const Aggregate& matter) {
         for (int n = 0; n < run.count; ++n) {
             const bool firm = is_firm(matter, run.first + n);
             for (int c = 0; c < 8; ++c) {
-                const ParticleId p = run.row[c >> 1] + n + (c & 1);
+                const ParticleId p = run.corner(n, c);
                 if (firm) held[p] = 1;
                 if (!firm) sliver.push_back({p, run.first + n, c});
             }

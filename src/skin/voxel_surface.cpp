@@ -49,7 +49,7 @@ class Builder {
                     n + 1 < run.count ? cell + 1 : -1,    lattice.cell_at(i, run.j + 1, run.k),
                     lattice.cell_at(i, run.j, run.k + 1), n > 0 ? cell - 1 : -1,
                     lattice.cell_at(i, run.j - 1, run.k), lattice.cell_at(i, run.j, run.k - 1)};
-                for (int c = 0; c < 8; ++c) corner_[cell][c] = run.row[c >> 1] + n + (c & 1);
+                for (int c = 0; c < 8; ++c) corner_[cell][c] = run.corner(n, c);
             }
         }
     }
