@@ -111,8 +111,7 @@ std::optional<KeptRun> kept_by_earlier_run(const SceneSpec& scene, const RunDire
     return std::nullopt;
 }
 
-void forget_what_is_done(const RunDirectory& directory, const SceneSpec& scene) {
-    if (!scene.output.keep_stages) return directory.forget_kept();
+void forget_what_is_within(const RunDirectory& directory) {
     std::error_code ignored;
     fs::remove(directory.stage_mark(), ignored);
     fs::remove(directory.kept_motion(), ignored);

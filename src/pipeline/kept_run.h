@@ -21,7 +21,7 @@ struct KeptRun {
 // that is to go on from stages that are the same has none.
 std::optional<KeptRun> kept_by_earlier_run(const SceneSpec& scene, const RunDirectory& directory);
 
-// What a run that is done leaves to go on from: its stages, unless the scene wants none.
-void forget_what_is_done(const RunDirectory& directory, const SceneSpec& scene);
+// What was kept within a stage serves nothing once the run is done. Its stages stay.
+void forget_what_is_within(const RunDirectory& directory);
 
 }  // namespace swage

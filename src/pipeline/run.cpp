@@ -76,7 +76,7 @@ class SceneRun {
     Json run() {
         is_simulated_ = take_up_earlier();
         if (is_simulated_) {
-            forget_what_is_done(directory_, scene_);
+            forget_what_is_within(directory_);
             if (plots_.has_undrawn()) draw_plots();
             if (!options_.draw || is_drawn(record_, files_, wanted_, scene_.render)) {
                 return tell_that_it_is_done();

@@ -83,10 +83,12 @@ class SimulationRun {
         }
         begin();  // where no stage has come to its first frame
         write_outcome();
-        if (!ended_.early()) {
-            forget_what_is_done(context_.directory, context_.scene);
-        } else {
+        if (ended_.early()) {
             tell_where_it_goes_on();
+        } else if (context_.scene.output.keep_stages) {
+            forget_what_is_within(context_.directory);
+        } else {
+            context_.directory.forget_kept();
         }
         return ended_;
     }
@@ -99,6 +101,8 @@ class SimulationRun {
 
     int stage_count() const { return static_cast<int>(context_.scene.stage.size()); }
     bool is_done() const { return reached_.stages == stage_count(); }
+    // Where all stages are kept it is in the last that anything is gone on.
+    int stage_after(int done) const { return std::min(done + 1, stage_count()); }
 
     // Within the stage that is at work or next; null: that begins at its start.
     StageMark* mark() {
@@ -137,7 +141,7 @@ class SimulationRun {
             record["bodies"][b]["matter"] = reached_.matter[b];
         }
         if (!kept_) return;
-        record["went_on_from"] = {{"stage", reached_.stages + 1},
+        record["went_on_from"] = {{"stage", stage_after(reached_.stages)},
                                   {"frame", recorder_.frame_count()}};
         record["stages"] = reached_.stage;
         for (const auto& [phase, seconds] : mark() ? mark()->seconds : reached_.seconds) {
@@ -263,7 +267,7 @@ class SimulationRun {
 
     void add_where_it_goes_on(Json& record) const {
         if (!keeper_.frame() && checkpoint_.stages == 0) return;
-        record["goes_on_from"] = {{"stage", checkpoint_.stages + 1},
+        record["goes_on_from"] = {{"stage", stage_after(checkpoint_.stages)},
                                   {"frame", keeper_.frame().value_or(checkpoint_.frame)}};
     }
 

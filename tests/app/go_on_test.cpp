@@ -110,7 +110,7 @@ TEST_CASE("of a run that is done only what was changed is worked, to the same by
         done.check();
         CHECK_FALSE(fs::exists(done.out / "replaced"));
         CHECK(Json::parse(bytes_of(done.out / "run.json")).at("went_on_from").at("stage") ==
-              kept + 1);
+              std::min(kept + 1, int(stages.size())));
     };
     const Stages &a = line.stages, &b = line.others;
     goes_on({a[0], a[1], b[2]}, 2);
@@ -293,6 +293,14 @@ TEST_CASE("what was kept of a stage and is damaged is told, and an earlier one s
     CHECK(none.code == 8);
     CHECK(says(none, "of what it has kept nothing is whole; choose another --out, or --fresh"));
     CHECK(files_below(done.out) == files);
+}
+
+TEST_CASE("a run that has nothing to do leaves what it kept") {
+    const DoneRun done(kMesh + metal(""), {kAtRest[0], kAtRest[2]});
+    const auto before = files_below(done.out);
+    const Outcome outcome = done.go_on({"--set", "output.keep_stages=false"});
+    CHECK(says(outcome, "already complete"));
+    CHECK(files_below(done.out) == before);
 }
 
 TEST_CASE("a run of which no stage is to be kept leaves none, and is the same run") {
