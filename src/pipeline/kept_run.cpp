@@ -71,8 +71,16 @@ std::optional<KeptRun> kept_by_earlier_run(const SceneSpec& scene, const RunDire
         std::optional<Reached> reached;
         if (stages > 0) {
             const fs::path file = directory.checkpoint(stages);
+            std::error_code unknown;
+            if (!fs::exists(file, unknown)) {
+                if (directory.was_kept(stages)) tell(file, "is gone", stages);
+                continue;
+            }
             // Of a run that is changed it may be of a stage that was.
-            if (directory.is_changed() && !is_kept(file, directory.stage_keys(), stages)) continue;
+            if (directory.is_changed() && !is_kept(file, directory.stage_keys(), stages)) {
+                if (directory.was_kept(stages)) tell(file, kDamaged, stages);
+                continue;
+            }
             std::string amiss;
             reached = read_checkpoint(file, directory.stage_keys(), amiss);
             if (reached && !fits(*reached, scene, stages)) {

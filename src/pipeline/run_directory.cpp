@@ -98,6 +98,25 @@ bool holds_products(const fs::path& root) {
     return static_cast<bool>(error);
 }
 
+// How many stages the run that lies here has finished and kept, as it says itself.
+int stages_said_to_be_kept(const fs::path& root, const RunIdentity& identity) {
+    if (!keeps_stages(identity)) return 0;  // the last one at most, and that not for long
+    const std::optional<Json> record = read_record(RunDirectory::record_in(root));
+    const Json stages = record ? record->value("stages", Json()) : Json();
+    const auto is_finished = [](const Json& stage) {
+        return stage.is_object() && stage.value("state", Json()) == RunState::complete;
+    };
+    if (!stages.is_array()) return 0;
+    return static_cast<int>(std::find_if_not(stages.begin(), stages.end(), is_finished) -
+                            stages.begin());
+}
+
+// How many of its first stages are the same; the keys of stages count from none on.
+int stages_alike(const std::vector<std::string>& there, const std::vector<std::string>& here) {
+    const auto [end, unused] = std::mismatch(there.begin(), there.end(), here.begin(), here.end());
+    return std::max(0, static_cast<int>(end - there.begin()) - 1);
+}
+
 }  // namespace
 
 bool holds_run(const fs::path& folder) {
@@ -132,10 +151,21 @@ void RunDirectory::claim(const RunIdentity& identity, EarlierRun earlier) {
         write_file_whole(file, identity_text_);
         return;
     }
-    const std::vector<std::string> found = differences(read_identity(file), identity);
+    const RunIdentity there = read_identity(file);
+    const std::vector<std::string> found = differences(there, identity);
+    last_that_was_kept_ =
+        std::min(stages_said_to_be_kept(root_, there), stages_alike(there.stage_key, stage_keys_));
     if (found.empty()) return;
-    const int kept = last_kept(static_cast<int>(stage_keys_.size()) - 1);
+    const int all = static_cast<int>(stage_keys_.size()) - 1, kept = last_kept(root_, all),
+              set_aside = holds_run(replaced()) ? last_kept(replaced(), all) : 0;
     const std::string change = joined(found, "; ");
+    std::string more_there;
+    if (set_aside > kept) {
+        more_there = fmt::format(
+            "{} has kept more stages that are the same ({} instead of {}): to go on from there, "
+            "move it to a place of its own and give that as --out",
+            replaced().string(), set_aside, kept);
+    }
     if (extends && (kept > 0 || fs::exists(stage_mark(), unknown))) {
         if (fs::exists(fs::symlink_status(replaced(), unknown)) && !holds_run(replaced())) {
             fail(ExitCode::foreign,
@@ -144,15 +174,24 @@ void RunDirectory::claim(const RunIdentity& identity, EarlierRun earlier) {
                  replaced().string());
         }
         change_ = change;
+        if (!more_there.empty()) log_warning("{}", more_there);
         return;
     }
-    const std::string first =
-        kept == 1 ? "its first stage" : fmt::format("its first {} stages", kept);
+    const auto first = [](int stages) {
+        return stages == 1 ? "its first stage" : fmt::format("its first {} stages", stages);
+    };
+    std::string in_vain;
+    if (extends) {
+        in_vain = last_that_was_kept_ > 0
+                      ? fmt::format("; and what it kept of {} is gone or damaged",
+                                    first(last_that_was_kept_))
+                      : "; and it has kept no stage to go on from that is the same";
+        if (!more_there.empty()) in_vain += ", but " + more_there;
+    }
     fail(ExitCode::foreign,
          "{}: belongs to another run: {}{}; choose another --out, or {}--fresh to throw {} away",
-         root_.string(), change,
-         extends ? "; and it has kept no stage to go on from that is the same" : "",
-         kept > 0 ? "--go-on to keep " + first + ", or " : "",
+         root_.string(), change, in_vain,
+         kept > 0 ? "--go-on to keep " + first(kept) + ", or " : "",
          holds_run(replaced()) ? "that run and the complete one in replaced/" : "that run");
 }
 
@@ -201,12 +240,12 @@ void RunDirectory::begin(const std::vector<fs::path>& kept) {
     change_.clear();
 }
 
-fs::path RunDirectory::checkpoint(int stages) const {
-    return resume() / fmt::format("after-{}.bin", stages);
+fs::path RunDirectory::checkpoint_in(const fs::path& run, int stages) {
+    return resume_in(run) / fmt::format("after-{}.bin", stages);
 }
 
-int RunDirectory::last_kept(int most) const {
-    while (most > 0 && !is_kept(checkpoint(most), stage_keys_, most)) --most;
+int RunDirectory::last_kept(const fs::path& run, int most) const {
+    while (most > 0 && !is_kept(checkpoint_in(run, most), stage_keys_, most)) --most;
     return most;
 }
 

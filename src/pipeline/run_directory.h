@@ -58,12 +58,12 @@ class RunDirectory {
     std::filesystem::path store() const { return store_in(root_); }
     // What a run goes on from: after so many stages and, as long as it is not done, within the next
     // and its motion file.
-    std::filesystem::path resume() const { return root_ / "resume"; }
-    std::filesystem::path checkpoint(int stages) const;
+    std::filesystem::path resume() const { return resume_in(root_); }
+    std::filesystem::path checkpoint(int stages) const { return checkpoint_in(root_, stages); }
     std::filesystem::path stage_mark() const { return resume() / "stage.bin"; }
     std::filesystem::path kept_motion() const { return resume() / "motion.bin"; }
-    // The last by these keys; 0: none.
-    int last_kept(int most) const;
+    // Whether the run that it holds says that it kept this, of a stage that is still the same.
+    bool was_kept(int stages) const { return stages <= last_that_was_kept_; }
     void forget_kept() const;
     void forget_kept_but(int first, int last) const;  // after these numbers of stages
     // A run that was done, until the one that goes on from its first stages is.
@@ -77,6 +77,12 @@ class RunDirectory {
     static std::filesystem::path exported(const std::filesystem::path& run) { return run / "usd"; }
 
   private:
+    static std::filesystem::path resume_in(const std::filesystem::path& run) {
+        return run / "resume";
+    }
+    static std::filesystem::path checkpoint_in(const std::filesystem::path& run, int stages);
+    // The last of a run that was kept by these keys; 0: none.
+    int last_kept(const std::filesystem::path& run, int most) const;
     void claim(const RunIdentity& identity, EarlierRun earlier);
     std::unique_ptr<FolderLock> lock_of_drawing() const;
     void set_aside() const;
@@ -87,6 +93,7 @@ class RunDirectory {
     std::string identity_text_;
     std::vector<std::string> stage_keys_;
     std::string change_;
+    int last_that_was_kept_ = 0;
     bool anew_, has_begun_ = false;
     std::optional<FolderLock> lock_;
 };

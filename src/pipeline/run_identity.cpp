@@ -96,6 +96,12 @@ void add_said(const std::vector<Said>& there, const std::vector<Said>& here,
 
 }  // namespace
 
+bool keeps_stages(const RunIdentity& identity) {
+    return std::none_of(identity.said.begin(), identity.said.end(), [](const Said& one) {
+        return one.key == kKeepsStages && one.value == "false";
+    });
+}
+
 bool is_said(const RunInput& input) { return input.role == "scene" || input.role == "--set"; }
 
 std::string identity_text(const RunIdentity& identity) {
@@ -111,6 +117,7 @@ std::string identity_text(const RunIdentity& identity) {
     for (const Said& one : identity.said) {
         json["scene"].push_back({one.key, one.value, one.shown});
     }
+    json["stage_keys"] = identity.stage_key;
     return json_text(json);
 }
 
@@ -129,6 +136,7 @@ RunIdentity read_identity(const fs::path& file) {
             identity.said.push_back({one.at(0).get<std::string>(), one.at(1).get<std::string>(),
                                      one.at(2).get<std::string>()});
         }
+        identity.stage_key = json.value("stage_keys", std::vector<std::string>());
     } catch (const Json::exception&) {
         fail(ExitCode::foreign,
              "{}: is damaged, so its run cannot be identified; remove it with "

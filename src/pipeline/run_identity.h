@@ -37,7 +37,10 @@ struct RunIdentity {
 // One sentence a difference, empty when they are the same run. File names may differ.
 std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here);
 
-// As it stands in a run's folder; the keys of stages do not.
+// Whether it leaves its stages once it is done.
+bool keeps_stages(const RunIdentity& identity);
+
+// As it stands in a run's folder.
 std::string identity_text(const RunIdentity& identity);
 // Throws Error(foreign) when that is nobody's.
 RunIdentity read_identity(const std::filesystem::path& file);

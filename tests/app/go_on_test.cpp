@@ -273,11 +273,13 @@ TEST_CASE("what was kept of a stage and is damaged is told, and an earlier one s
     put_text(second, whole.substr(0, whole.size() / 3));
     serves(1, "after-2.bin: is damaged, so stage 2 begins anew");
     fs::remove(second);
-    serves(1, "");
-    put_text(second, "of some other time");
-    serves(1, "");
+    serves(1, "after-2.bin: is gone, so stage 2 begins anew");
+    for (const char* other : {"", "of some other time"}) {
+        put_text(second, other);
+        serves(1, "after-2.bin: is damaged, so stage 2 begins anew");
+    }
     fs::copy_file(done.out / "resume/after-1.bin", second, fs::copy_options::overwrite_existing);
-    serves(1, "");
+    serves(1, "after-2.bin: is damaged, so stage 2 begins anew");
     fs::remove(done.out / "meshes/2-cut.obj");
     serves(1, "2-cut.obj, which is gone, so stage 2 begins anew");
 
@@ -293,6 +295,42 @@ TEST_CASE("what was kept of a stage and is damaged is told, and an earlier one s
     CHECK(none.code == 8);
     CHECK(says(none, "of what it has kept nothing is whole; choose another --out, or --fresh"));
     CHECK(files_below(done.out) == files);
+
+    as_it_was();
+    for (const int n : {1, 2}) put_text(done.out / fmt::format("resume/after-{}.bin", n), "");
+    CHECK(says(done.go_on(), "and what it kept of its first 2 stages is gone or damaged; choose"));
+    // Of what was changed nothing is missed.
+    fs::remove_all(done.out / "resume");
+    done.put({kAtRestToo[0], kAtRest[1], kAtRest[2]});
+    CHECK(says(done.go_on(), "it has kept no stage to go on from that is the same; choose"));
+}
+
+TEST_CASE("that the run which is replaced has kept more that serves is told") {
+    const DoneRun done(kMesh + metal(""), kAtRest);
+    fs::create_directory(done.out / "replaced");
+    for (const char* name : {".swage-run", "resume"}) {
+        fs::copy(done.out / name, done.out / "replaced" / name, fs::copy_options::recursive);
+    }
+    const auto ends_after = [&](int stages) {
+        for (int n = stages + 1; n <= 3; ++n) {
+            fs::remove(done.out / fmt::format("resume/after-{}.bin", n));
+        }
+        Json record = Json::parse(bytes_of(done.out / "run.json"));
+        record["state"] = "interrupted";
+        record["stages"].erase(record["stages"].begin() + stages, record["stages"].end());
+        put_text(done.out / "run.json", record.dump());
+    };
+    const std::string told =
+        "replaced has kept more stages that are the same ({} instead of {}): "
+        "to go on from there, move it to a place of its own";
+    done.put({kAtRest[0], kAtRest[1], kAtRestToo[2]});
+    ends_after(1);
+    const Outcome outcome = done.go_on();
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(says(outcome, fmt::format(fmt::runtime(told), 2, 1)));
+    CHECK_FALSE(says(outcome, "bin: is gone"));
+    done.check();
 }
 
 TEST_CASE("a run that has nothing to do leaves what it kept") {
