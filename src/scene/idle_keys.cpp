@@ -171,8 +171,8 @@ const std::vector<IdleKey> kOfMeshes = {
     {"cut_color",
      [](const Section& at) -> std::string {
          const bool cuts =
-             any_stage(at.scene, [](const StageSpec& s) { return !s.machine.blade.empty(); });
-         return cuts || breaks(at.scene) ? "" : ": no machine cuts, and no material breaks";
+             at.scene.any_stage([](const StageSpec& s) { return !s.machine.blade.empty(); });
+         return cuts || at.scene.breaks() ? "" : ": no machine cuts, and no material breaks";
      }},
 };
 
