@@ -69,7 +69,7 @@ PassWriter::PassWriter(const FrameStore& store, const RenderSettings& settings,
         next += static_cast<int>(store.machine(machine).size());
     }
     if (settings_.has(PicturePass::piece)) {
-        pieces_.emplace(store_);
+        pieces_.emplace(store_, names.piece);
         for (std::size_t b = 0; b < bodies_; ++b) {
             first_piece_.push_back(next);
             next += pieces_->count(b) - 1;
@@ -173,7 +173,7 @@ void PassWriter::write_table(PicturePass pass) const {
         for (int p = 0; pass == PicturePass::piece && p < pieces_->count(b); ++p) {
             Json& piece = add(number_of_piece(b, p), "piece", name);
             piece["piece"] = p + 1;
-            piece["from_frame"] = pieces_->first_frame(b, p);
+            piece["from_frame"] = pieces_->first_frame(b, p) + files_.first_frame - 1;
         }
     }
     for (const auto& [machine, frame] : first_frame_) {

@@ -21,7 +21,8 @@ namespace swage {
 struct RunNames {
     std::vector<std::string> body;
     std::vector<UsdStage> stage;
-    std::string scene = {};  // the file's
+    std::string scene = {};            // the file's
+    std::vector<NamedPieces> piece{};  // after the last stage
 };
 
 using MatteColor = std::array<std::uint8_t, 3>;

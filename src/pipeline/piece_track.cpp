@@ -15,35 +15,44 @@ struct PieceTrack::Skin {
     TriMesh mesh;
     std::vector<Vec3> position;  // in the last frame that it was in
     Components shells;
-    std::vector<double> area;  // of each
-    std::vector<int> piece;    // likewise
 
     Skin(int number, TriMesh surface, std::vector<Vec3> place)
         : id(number),
           mesh(std::move(surface)),
           position(std::move(place)),
-          shells(surface_components(mesh)),
-          area(std::size_t(shells.count), 0.0),
-          piece(area.size(), 0) {
+          shells(surface_components(mesh)) {}
+
+    // Of each shell.
+    std::vector<double> volume() const {
+        std::vector<double> volume(std::size_t(shells.count), 0.0);
         for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
-            area[std::size_t(shells.triangle_component[t])] +=
-                0.5 * area_vector(mesh.position, mesh.triangle[t]).norm();
+            const Corners& c = mesh.triangle[t];
+            const Vec3& origin = position[mesh.triangle.front()[0]];
+            const Vec3 a = position[c[0]] - origin, b = position[c[1]] - origin;
+            volume[std::size_t(shells.triangle_component[t])] +=
+                a.dot(b.cross(position[c[2]] - origin)) / 6;
         }
+        return volume;
     }
 };
 
-std::vector<int> PieceTrack::parents(const Skin& now, const Skin& before) {
-    return parent_shells(now.mesh, now.position, now.shells, before.mesh, before.position,
-                         before.shells);
-}
+// A skin, from when it is there.
+struct PieceTrack::Step {
+    int skin = 0, frame = 1;
+    std::vector<int> parent;  // of each shell, in the skin before
+    std::vector<double> volume;
+    std::vector<int> piece = std::vector<int>(parent.size(), kNone);
+    static constexpr int kNone = -1;
+};
 
-PieceTrack::PieceTrack(const FrameStore& store) {
+PieceTrack::PieceTrack(const FrameStore& store, const std::vector<NamedPieces>& told) {
     std::vector<std::optional<Skin>> last;
+    std::vector<std::vector<Step>> steps;  // of each body
     for (int frame = 1; frame <= store.frame_count(); ++frame) {
         throw_if_interrupted();
         StoredFrame stored = store.frame(frame - 1);
         last.resize(std::max(last.size(), stored.body.size()));
-        first_frame_.resize(last.size());
+        steps.resize(last.size());
         for (std::size_t b = 0; b < stored.body.size(); ++b) {
             StoredBody& body = stored.body[b];
             if (last[b] && last[b]->id == body.skin) {
@@ -51,35 +60,62 @@ PieceTrack::PieceTrack(const FrameStore& store) {
                 continue;
             }
             Skin now(body.skin, store.skin(body.skin), std::move(body.position));
+            std::vector<int> parent(std::size_t(now.shells.count), Step::kNone);
             if (last[b]) {
-                number_shells(now, *last[b], frame, first_frame_[b]);
-            } else {
-                first_frame_[b] = {frame};
+                steps[b].back().volume = last[b]->volume();
+                if (last[b]->shells.count > 0) {
+                    parent = parent_shells(now.mesh, now.position, now.shells, last[b]->mesh,
+                                           last[b]->position, last[b]->shells);
+                }
             }
-            of_shell_[{b, now.id}] = now.piece;
+            steps[b].push_back({now.id, frame, std::move(parent), {}});
             last[b] = std::move(now);
         }
     }
+    first_frame_.resize(last.size());
+    for (std::size_t b = 0; b < last.size(); ++b) {
+        if (!last[b]) continue;
+        steps[b].back().volume = last[b]->volume();
+        const std::vector<int>& shell = last[b]->shells.triangle_component;
+        std::vector<int> first;  // shells of the last skin
+        if (b < told.size() && told[b].frame == store.frame_count()) {
+            for (const int t : told[b].triangle) {
+                if (t >= 0 && std::size_t(t) < shell.size()) first.push_back(shell[t]);
+            }
+        }
+        number(b, steps[b], std::move(first));
+    }
 }
 
-void PieceTrack::number_shells(Skin& now, const Skin& before, int frame,
-                               std::vector<int>& first_frame) {
-    if (before.area.empty()) return;
-    const std::vector<int> parent = parents(now, before);
-    std::vector<std::size_t> order(now.area.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return now.area[a] > now.area[b]; });
-    std::vector<char> is_taken(before.area.size(), 0);
-    for (const std::size_t s : order) {
-        const auto from = static_cast<std::size_t>(parent[s]);
-        if (!is_taken[from]) {
-            now.piece[s] = before.piece[from];
-            is_taken[from] = 1;
-        } else {
-            now.piece[s] = static_cast<int>(first_frame.size());
-            first_frame.push_back(frame);
+// `first`: of the last of them, before its others.
+void PieceTrack::number(std::size_t body, std::vector<Step>& steps, std::vector<int> first) {
+    std::vector<int>& first_frame = first_frame_[body] = {steps.front().frame};
+    for (std::size_t last = steps.size(); last-- > 0; first.clear()) {
+        const std::vector<double>& volume = steps[last].volume;
+        std::vector<int> order(volume.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](int a, int b) { return volume[a] > volume[b]; });
+        order.insert(order.begin(), first.begin(), first.end());
+        for (const int shell : order) {
+            if (steps[last].piece[shell] != Step::kNone) continue;
+            // Back to where it came off something that has a number, or to the start.
+            std::vector<int*> unnumbered;
+            int at = shell, number = 0;
+            for (std::size_t s = last;; --s) {
+                unnumbered.push_back(&steps[s].piece[at]);
+                const int parent = steps[s].parent[at];
+                if (s == 0 || parent == Step::kNone) break;
+                if (steps[s - 1].piece[parent] != Step::kNone) {
+                    number = static_cast<int>(first_frame.size());
+                    first_frame.push_back(steps[s].frame);
+                    break;
+                }
+                at = parent;
+            }
+            for (int* piece : unnumbered) *piece = number;
         }
+        of_shell_[{body, steps[last].skin}] = steps[last].piece;
     }
 }
 

@@ -10,13 +10,20 @@
 
 namespace swage {
 
-// A body is one piece as it starts, of however many shells its skin is. Where a shell comes apart
-// the largest part, by area, keeps the number, and the others have the next ones; where shells are
-// joined again the number is that of the larger.
+// A triangle of each piece of a body's skin in that frame, in the order of their numbers.
+struct NamedPieces {
+    int frame = 0;
+    std::vector<int> triangle;
+};
+
+// A body is one piece as it starts, of however many shells its skin is. Pieces are numbered as they
+// are in the last frame, the heaviest first: as that is told or, where it is not, by volume. Those
+// that are not there any more, since shells were joined again, come after. Where a shell comes
+// apart the number stays with the part that the first of what becomes of it is from.
 class PieceTrack {
   public:
-    // Goes over all frames. Throws Interrupted.
-    explicit PieceTrack(const FrameStore& store);
+    // Goes over all frames. `told`: of each body, in the last frame. Throws Interrupted.
+    explicit PieceTrack(const FrameStore& store, const std::vector<NamedPieces>& told = {});
 
     int count(std::size_t body) const { return static_cast<int>(first_frame_.at(body).size()); }
     // That a piece of it comes in.
@@ -26,9 +33,8 @@ class PieceTrack {
 
   private:
     struct Skin;
-    static std::vector<int> parents(const Skin& now, const Skin& before);
-    static void number_shells(Skin& now, const Skin& before, int frame,
-                              std::vector<int>& first_frame);
+    struct Step;
+    void number(std::size_t body, std::vector<Step>& steps, std::vector<int> first);
 
     std::map<std::pair<std::size_t, int>, std::vector<int>> of_shell_;  // of a body's skin
     std::vector<std::vector<int>> first_frame_;                         // of each piece

@@ -293,6 +293,12 @@ RunNames run_names_of(const Json& record) {
         for (const Json& body : record.at("bodies")) names.body.push_back(body.at("name"));
         for (const Json& stage : record.value("stages", Json::array())) {
             names.stage.push_back({stage.at("name"), stage.at("frames").at(1)});
+            const Json pieces = stage.value("skin_pieces", Json::object());
+            names.piece.clear();
+            for (const std::string& body : names.body) {
+                names.piece.push_back(
+                    {stage.at("frames").at(1), pieces.value(body, std::vector<int>())});
+            }
         }
     } catch (const Json::exception&) {
         fail(ExitCode::output,

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/stage_record.h"
 
+#include <algorithm>
+
 #include "base/hash.h"
 #include "pipeline/given_record.h"
 #include "pipeline/machine_place.h"
+#include "skin/skin_pieces.h"
 
 namespace swage {
 
@@ -38,6 +41,21 @@ Json energies_json(const Books& books) {
             if (entry.at_start == nullptr) continue;
             json[std::string(entry.key) + "_at_start"] = books.*entry.at_start;
         }
+    }
+    return json;
+}
+
+// Of each body in several pieces, a triangle of each in its skin, as they are numbered.
+Json skin_pieces_json(const std::vector<WorkPiece>& bodies) {
+    Json json = Json::object();
+    for (const WorkPiece& body : bodies) {
+        const std::vector<int> piece = skin_pieces(body.skin, body.mount, body.matter);
+        std::vector<std::size_t> triangle;
+        for (std::size_t t = 0; t < piece.size(); ++t) {
+            triangle.resize(std::max(triangle.size(), std::size_t(piece[t]) + 1), piece.size());
+            triangle[piece[t]] = std::min(triangle[piece[t]], t);
+        }
+        if (triangle.size() > 1) json[body.name] = triangle;
     }
     return json;
 }
@@ -92,6 +110,7 @@ Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap
         {"severed", totals.severed},
         {"broken", totals.broken},
         {"pieces", last.pieces},
+        {"skin_pieces", skin_pieces_json(end.bodies)},
         {"iterations", totals.iterations},
         {"increments", totals.increments},
         {"halvings", totals.halvings},

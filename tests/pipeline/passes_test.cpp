@@ -182,6 +182,17 @@ TEST_CASE(
         CHECK(seen[0] + seen[1] == is_body);
         if (f < kSecond) CHECK(piece.rgb == matte.rgb);
     }
+    // The frame that a piece comes in is called what its still is called.
+    const DrawnFiles late{run.out(), 1001};
+    run.settings.first_frame = 1001;
+    Stopwatch watch;
+    draw_run(FrameStore(run.store()), run.settings, {1, 1}, late, watch, run.names);
+    const Json then = Json::parse(test::bytes_of(late.table(PicturePass::piece))).at("pieces");
+    std::vector<int> from;
+    for (const Json& one : then) {
+        if (one.at("is") == "piece") from.push_back(one.at("from_frame"));
+    }
+    CHECK(from == std::vector<int>{1001, 1000 + kSecond});
 }
 
 TEST_CASE("frames are called from the first one's number on, and so are their passes") {

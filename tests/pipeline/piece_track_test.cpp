@@ -41,11 +41,12 @@ std::vector<int> of_boxes(const PieceTrack& track, int skin, const TriMesh& mesh
 }  // namespace
 
 TEST_CASE(
-    "a piece keeps its number, in whatever order a skin has it, and parts of it get new ones") {
+    "a piece keeps its number, in whatever order a skin has it, and what comes off it has one of "
+    "its own") {
     const Scratch scratch;
     const std::vector<TriMesh> skins = {
-        boxes({{0, 10}}), boxes({{0, 4}, {4, 10}}), boxes({{0, 4}, {9, 10}, {4, 9}}),
-        boxes({{9, 10}, {4, 9}, {0, 1}, {1, 4}}), boxes({{0, 1}, {1, 9}, {9, 10}})};
+        boxes({{0, 10}}), boxes({{0, 4}, {4, 10}}), boxes({{0, 4}, {9.2, 10}, {4, 9.2}}),
+        boxes({{9.2, 10}, {4, 9.2}, {0, 1}, {1, 4}}), boxes({{0, 1}, {1, 9.2}, {9.2, 10}})};
     {
         FrameStoreWriter writer(scratch.path() / "motion.bin");
         writer.add_machine({});
@@ -65,13 +66,44 @@ TEST_CASE(
     CHECK(of_boxes(track, 0, skins[0]) == std::vector<int>{0});
     CHECK(of_boxes(track, 1, skins[1]) == std::vector<int>{1, 0});
     CHECK(of_boxes(track, 2, skins[2]) == std::vector<int>{1, 2, 0});
-    CHECK(of_boxes(track, 3, skins[3]) == std::vector<int>{2, 0, 3, 1});
-    // Joined again: that of the larger part.
-    CHECK(of_boxes(track, 4, skins[4]) == std::vector<int>{3, 0, 2});
+    CHECK(of_boxes(track, 3, skins[3]) == std::vector<int>{2, 0, 1, 3});
+    // Joined again: that of the larger part, and the other comes last.
+    CHECK(of_boxes(track, 4, skins[4]) == std::vector<int>{1, 0, 2});
     CHECK(track.count(0) == 4);
     CHECK(track.first_frame(0, 0) == 1);
     CHECK(track.first_frame(0, 1) == 3);
+    CHECK(track.first_frame(0, 2) == 5);
     CHECK(track.first_frame(0, 3) == 7);
+}
+
+TEST_CASE("pieces are numbered by what they come to be, and a body is the first of its own") {
+    const Scratch scratch;
+    // The larger part is broken again, so that the other becomes the largest.
+    const std::vector<TriMesh> skins = {boxes({{0, 10}}), boxes({{0, 4}, {4, 10}}),
+                                        boxes({{0, 4}, {4, 7}, {7, 10}})};
+    {
+        FrameStoreWriter writer(scratch.path() / "motion.bin");
+        writer.add_machine({});
+        for (const TriMesh& skin : skins) {
+            StoredFrame frame;
+            frame.body = {{writer.add_skin(skin), skin.position}};
+            writer.add_frame(frame);
+        }
+        writer.finish();
+    }
+    const FrameStore store(scratch.path() / "motion.bin");
+    const int box = kTrianglesOfBox;
+    const PieceTrack by_volume(store), told(store, {{3, {2 * box, 1, box + 5}}}),
+        of_another_time(store, {{2, {2 * box, 1, box + 5}}}), nonsense(store, {{3, {-1, 999}}});
+    for (const PieceTrack* track : {&by_volume, &of_another_time, &nonsense}) {
+        CHECK(of_boxes(*track, 0, skins[0]) == std::vector<int>{0});
+        CHECK(of_boxes(*track, 1, skins[1]) == std::vector<int>{0, 1});
+        CHECK(of_boxes(*track, 2, skins[2]) == std::vector<int>{0, 1, 2});
+        CHECK(track->first_frame(0, 1) == 2);
+        CHECK(track->first_frame(0, 2) == 3);
+    }
+    CHECK(of_boxes(told, 1, skins[1]) == std::vector<int>{1, 0});
+    CHECK(of_boxes(told, 2, skins[2]) == std::vector<int>{1, 2, 0});
 }
 
 TEST_CASE("a body of several shells is one piece as it starts") {
