@@ -231,6 +231,13 @@ std::vector<LoadPeaks> peaks_of(const StageCurves& curves) {
             };
             raise(peaks.force, load.force[row].norm());
             raise(peaks.torque, load.torque[row].norm());
+            if (load.axis) {
+                if (!peaks.axial) peaks.axial = {0, curves.frame()[row]};
+                const double axial = load.axial_torque[row];
+                if (std::abs(axial) > std::abs(peaks.axial->size)) {
+                    peaks.axial = {axial, curves.frame()[row]};
+                }
+            }
             const Vec3 gone = load.pose[row].translation - load.pose.front().translation;
             peaks.stroke = std::max(peaks.stroke, gone.norm());
             if (std::abs(load.turn[row]) > std::abs(peaks.turn)) peaks.turn = load.turn[row];

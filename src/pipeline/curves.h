@@ -96,9 +96,10 @@ struct Peak {
 };
 struct LoadPeaks {
     std::string name;
-    Peak force, torque;  // [N], [N m]
-    double stroke = 0;   // [m] from where it was at the start, the farthest
-    double turn = 0;     // [rad] since the start, the most to either side
+    Peak force, torque;           // [N], [N m]
+    std::optional<Peak> axial{};  // of a part that turns, about its axis, the most to either side
+    double stroke = 0;            // [m] from where it was at the start, the farthest
+    double turn = 0;              // [rad] since the start, the most to either side
 };
 std::vector<LoadPeaks> peaks_of(const StageCurves& curves);
 

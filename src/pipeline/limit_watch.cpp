@@ -37,13 +37,13 @@ Json limits_json(const MachineSpec& machine) {
 LimitWatch::LimitWatch(const StageSpec& stage, const Machine& machine)
     : stage_(stage), machine_(machine), most_(machine.apparatus.limit.size()) {}
 
-void LimitWatch::look(int frame, const FrameReport& report) {
+void LimitWatch::look(int frame, const FrameReport& report, bool within) {
     if (stop_) return;
     for (std::size_t l = 0; l < most_.size(); ++l) {
         const LoadLimit& limit = machine_.apparatus.limit[l];
         const ToolLoad& load = report.load[limit.part];
         const double borne = limit.borne(load.force, load.torque, load.pose);
-        if (borne > most_[l].borne) most_[l] = {borne, frame};
+        if (borne > most_[l].borne) most_[l] = {borne, frame, within};
     }
     if (!report.stop) return;
     stop_ = report.stop;
@@ -81,12 +81,14 @@ std::vector<std::string> LimitWatch::warnings(bool whole) const {
     }
     for (std::size_t l = 0; whole && !stop_ && l < most_.size(); ++l) {
         const LimitSpec& limit = machine_.spec.limit[l];
-        lines.push_back(fmt::format("{}: {} never reached its limit of {}: {}", stage_.name,
-                                    limit.part, amount(limit.most, limit),
-                                    most_[l].borne > 0
-                                        ? fmt::format("the most that it bore was {}, in frame {}",
-                                                      amount(most_[l].borne, limit), most_[l].frame)
-                                        : "it bore nothing"));
+        lines.push_back(
+            fmt::format("{}: {} never reached its limit of {}: {}", stage_.name, limit.part,
+                        amount(limit.most, limit),
+                        most_[l].borne > 0
+                            ? fmt::format("the most that it bore was {}, {} frame {}",
+                                          amount(most_[l].borne, limit),
+                                          most_[l].within ? "on the way to" : "in", most_[l].frame)
+                            : "it bore nothing"));
     }
     return lines;
 }

@@ -23,7 +23,8 @@ class LimitWatch {
     LimitWatch(const StageSpec& stage, const Machine& machine);
 
     // After each leg, with the machine as it then is. Tells in the log where a limit was reached.
-    void look(int frame, const FrameReport& report);
+    // `within`: the frame goes on.
+    void look(int frame, const FrameReport& report, bool within = false);
 
     // `whole`: the stage was gone through.
     std::vector<std::string> warnings(bool whole) const;
@@ -40,7 +41,7 @@ class LimitWatch {
         using IsPlain = Most;
 
         double borne = 0;
-        int frame = 0;
+        int frame = 0, within = 0;  // that, and no row of the curves has it
     };
     const LimitSpec& spec() const;  // of the limit that was reached
     bool is_met() const;            // neither jumped over nor gone beyond from the start

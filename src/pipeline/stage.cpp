@@ -250,7 +250,7 @@ class StageRun {
                 } else {
                     way_.go_on();
                 }
-                limits_.look(number, report);
+                limits_.look(number, report, way_.goes_on_in(n));
                 frame.go_on(std::move(report));
                 curves_->pass(frame.load);
             }

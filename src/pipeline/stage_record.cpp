@@ -27,6 +27,9 @@ Json peaks_json(const StageCurves& curves) {
         json[peaks.name] = {{"force_N", peaks.force.size},     {"force_frame", peaks.force.frame},
                             {"torque_N_m", peaks.torque.size}, {"torque_frame", peaks.torque.frame},
                             {"stroke_m", peaks.stroke},        {"turn_rad", peaks.turn}};
+        if (!peaks.axial) continue;
+        json[peaks.name]["torque_about_axis_N_m"] = peaks.axial->size;
+        json[peaks.name]["torque_about_axis_frame"] = peaks.axial->frame;
     }
     return json;
 }

@@ -193,6 +193,25 @@ TEST_CASE("peaks are the most that was felt, in the frame it was, and the farthe
     CHECK(peaks[0].turn == Approx(-0.4));
     CHECK(peaks[1].force.size == 0);
     CHECK(peaks[1].stroke == 0);
+    CHECK_FALSE(peaks[0].axial);
+}
+
+TEST_CASE("of a part that turns the peaks have the torque about its axis, with its sense") {
+    const TurnAxis axis{Vec3::UnitZ(), Vec3(0, 0.1, 0)};
+    StageCurves curves("s", 7, {{"arm", Pose{}}}, {}, 1, {axis});
+    const double forces[] = {10, -30, 20};  // along x, 10 cm from the axis
+    for (int n = 0; n < 3; ++n) {
+        FrameReport report;
+        report.load.resize(1);
+        report.load[0].force = {forces[n], 0, 0};
+        report.load[0].torque = {0, 99, 0.5};
+        curves.add(8 + n, report);
+    }
+    const LoadPeaks peaks = peaks_of(curves).at(0);
+    REQUIRE(peaks.axial);
+    CHECK(peaks.axial->size == Approx(-30 * 0.1 + 0.5));
+    CHECK(peaks.axial->frame == 9);
+    CHECK(peaks.axial->size == curves.load()[0].axial_torque[2]);
 }
 
 TEST_CASE("a frame of several legs keeps the deepest that a tool went in") {
