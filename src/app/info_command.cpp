@@ -89,6 +89,9 @@ std::string run_text(const std::string& folder, const Json& record) {
                             stage.at("frames").at(1).get<int>());
         for (const std::string& use : use_texts(stage)) text += fmt::format("  {}\n", use);
     }
+    for (const Json& warning : record.value("warnings", Json::array())) {
+        text += fmt::format("  {:<12} {}\n", "warning", warning.get<std::string>());
+    }
     return text;
 }
 
@@ -97,7 +100,7 @@ int info(const InfoArguments& given) {
         const std::filesystem::path file = RunDirectory::record_in(given.file);
         const std::optional<Json> record = read_record(file);
         if (!record) {
-            fail(ExitCode::command_line, "{} is not a run directory: it has no complete run.json",
+            fail(ExitCode::output, "{} is not a run directory: it has no complete run.json",
                  given.file);
         }
         if (given.json) {

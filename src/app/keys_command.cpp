@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <sstream>
 
 #include "app/command.h"
 #include "app/word_wrap.h"
@@ -24,6 +25,16 @@ std::string bare(const std::string& section) {
     return name;
 }
 
+// As --set has them: "stage.2.load.1" is of [[stage.load]].
+std::string without_numbers(const std::string& section) {
+    std::string name, word;
+    for (std::istringstream words(section); std::getline(words, word, '.');) {
+        if (word.find_first_not_of("0123456789*") == word.npos) continue;
+        name += (name.empty() ? "" : ".") + word;
+    }
+    return name;
+}
+
 // The sections of that name and what lies in them, or else the keys of that name.
 std::vector<SectionReference> chosen(const std::vector<SectionReference>& all,
                                      const std::string& word) {
@@ -36,6 +47,20 @@ std::vector<SectionReference> chosen(const std::vector<SectionReference>& all,
         }
     }
     if (!found.empty()) return found;
+    // "render.color", "stage.1.frames": a key of that section.
+    if (const std::size_t dot = name.rfind('.'); dot != name.npos) {
+        const std::string wanted = without_numbers(name.substr(0, dot));
+        for (const SectionReference& one : all) {
+            const std::string section = bare(one.section);
+            if (section != wanted && !section.ends_with("." + wanted)) continue;
+            SectionReference part{one.section, {}};
+            for (const KeyReference& key : one.key) {
+                if (key.key == name.substr(dot + 1)) part.key.push_back(key);
+            }
+            if (!part.key.empty()) found.push_back(part);
+        }
+        if (!found.empty()) return found;
+    }
     std::vector<std::string> known;
     for (const SectionReference& one : all) {
         SectionReference part{one.section, {}};
@@ -47,8 +72,12 @@ std::vector<SectionReference> chosen(const std::vector<SectionReference>& all,
         if (!part.key.empty()) found.push_back(part);
     }
     if (found.empty()) {
+        const std::string hint = did_you_mean(name, known);
+        const bool is_of_stage = without_numbers(name).starts_with("stage.");
         fail(ExitCode::command_line, "there is no section or key \"{}\"{}", word,
-             did_you_mean(name, known));
+             is_of_stage
+                 ? hint_and(hint, "the command swage machines NAME lists those of a machine")
+                 : hint);
     }
     return found;
 }
@@ -106,10 +135,12 @@ void add_keys_command(CLI::App& app, Action& chosen) {
                                     "  swage keys\n"
                                     "  swage keys stage\n"
                                     "  swage keys young_modulus\n"
+                                    "  swage keys render.color\n"
                                     "  swage keys --machine\n"
                                     "  swage keys --machine expressions\n",
                                     chosen, [] { return keys(given); });
-    command->add_option("word", given.word, "a section or a key")->type_name("WORD");
+    command->add_option("word", given.word, "a section, a key, or both as in render.color")
+        ->type_name("WORD");
     command->add_flag("--machine", given.machine,
                       "list the keys of machine files instead, and what their expressions can use");
     command->add_flag("--json", given.json, "print JSON");

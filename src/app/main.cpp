@@ -48,7 +48,8 @@ int run_command_line(int argc, char** argv) {
         "  swage check assets/scenes/calf-line.toml\n"
         "  swage machines bend\n"
         "  swage keys stage\n\n"
-        "Exit codes: 0 done, 2 command line, 3 scene, 4 mesh, 5 output or drawing, 6 "
+        "Exit codes: 0 done, 2 command line (also an unknown machine, material or key), 3 "
+        "scene\nor machine file, 4 mesh, 5 a run's folder, output or drawing, 6 "
         "simulation\nstopped, 7 refused for resources, 8 output directory belongs to another "
         "run, 128+n by\nsignal n");
     Action chosen;

@@ -137,8 +137,8 @@ int materials(const MaterialsArguments& given) {
         }
         return 0;
     }
-    fail(ExitCode::command_line, "there is no material \"{}\"{}; swage materials lists them",
-         given.name, did_you_mean(given.name, known));
+    fail(ExitCode::command_line, "there is no material \"{}\"{}", given.name,
+         hint_and(did_you_mean(given.name, known), "the command swage materials lists them"));
 }
 
 }  // namespace

@@ -37,8 +37,9 @@ std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error,
         if (!is_option && !commands.empty()) {
             if (!holds(commands, argument)) {
                 const std::string meant = did_you_mean(argument, commands);
-                return fmt::format("there is no {} \"{}\"{}",
-                                   command == &app ? "command" : command->get_name(), argument,
+                std::string kind = command->get_formatter()->get_label("COMMAND");
+                for (char& c : kind) c = CLI::detail::to_lower(std::string(1, c))[0];
+                return fmt::format("there is no {} \"{}\"{}", kind, argument,
                                    meant.empty() ? ": " + joined(commands, ", ") : meant);
             }
             command = command->get_subcommand(argument);
@@ -48,6 +49,14 @@ std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error,
             if (!holds(options, name)) {
                 return fmt::format("there is no option {}{}", name, did_you_mean(name, options));
             }
+        }
+    }
+    if (error.get_name() == "RequiredError") {
+        for (const CLI::Option* option : command->get_options()) {
+            if (!option->get_positional() || !option->get_required() || option->count() > 0)
+                continue;
+            return fmt::format("{0} is required: swage {1} {0}", option->get_type_name(),
+                               command->get_name());
         }
     }
     return error.what();

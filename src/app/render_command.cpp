@@ -152,6 +152,12 @@ void add_render_command(CLI::App& app, Action& chosen) {
             "(default: as the scene says)")
         ->delimiter(',')
         ->check(CLI::IsMember(passes))
+        ->transform(CLI::Validator(
+            [](std::string& name) {
+                CLI::detail::trim(name);
+                return std::string();
+            },
+            ""))
         ->type_name("LIST");
     CLI::Option* film =
         command->add_flag("--film", given.film, "make a film even if the scene has film = false");

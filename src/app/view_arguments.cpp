@@ -39,8 +39,9 @@ CLI::Validator angle_or_auto(double low, double high) {
 const CLI::Validator kFinite(
     [](const std::string& text) {
         char* end = nullptr;
-        return std::isfinite(std::strtod(text.c_str(), &end)) ? std::string()
-                                                              : text + " is not a finite number";
+        const bool is_number =
+            std::isfinite(std::strtod(text.c_str(), &end)) && !text.empty() && *end == '\0';
+        return is_number ? std::string() : "\"" + text + "\" is not a finite number";
     },
     "");
 

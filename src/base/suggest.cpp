@@ -65,4 +65,10 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     return best.empty() ? "" : ", did you mean \"" + best + "\"?";
 }
 
+std::string hint_and(const std::string& hint, std::string more) {
+    if (hint.empty() || more.empty()) return (hint.empty() ? "; " : hint) + more;
+    if (more[0] >= 'a' && more[0] <= 'z') more[0] = static_cast<char>(more[0] - 'a' + 'A');
+    return hint + " " + more;
+}
+
 }  // namespace swage

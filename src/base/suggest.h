@@ -19,4 +19,8 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 // `, did you mean "yield_stress"?`, or empty.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
+// A hint and what else is to be said: `, did you mean "mm"? Expected a length`; where there is no
+// hint, `; expected a length`.
+std::string hint_and(const std::string& hint, std::string more);
+
 }  // namespace swage

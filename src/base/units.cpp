@@ -41,6 +41,8 @@ constexpr Unit kUnits[] = {
     {"inches", Quantity::length, kInch},
     {"ft", Quantity::length, 12 * kInch},
     {"feet", Quantity::length, 12 * kInch},
+    {"yd", Quantity::length, 36 * kInch},
+    {"mil", Quantity::length, 1e-3 * kInch},
     {"deg", Quantity::angle, kDegree, true},
     {"rad", Quantity::angle, 1},
     {"mrad", Quantity::angle, 1e-3},
@@ -61,6 +63,7 @@ constexpr Unit kUnits[] = {
     {"km/h", Quantity::speed, 1 / 3.6},
     {"in/s", Quantity::speed, kInch},
     {"ft/s", Quantity::speed, 12 * kInch},
+    {"mph", Quantity::speed, 63360 * kInch / 3600},
     {"GPa", Quantity::stress, 1e9, true},
     {"MPa", Quantity::stress, 1e6, true},
     {"kPa", Quantity::stress, 1e3, true},
@@ -70,6 +73,8 @@ constexpr Unit kUnits[] = {
     {"bar", Quantity::stress, 1e5},
     {"psi", Quantity::stress, kPoundForce / (kInch * kInch)},
     {"ksi", Quantity::stress, 1e3 * kPoundForce / (kInch * kInch)},
+    {"lbf/in2", Quantity::stress, kPoundForce / (kInch * kInch)},
+    {"lbf/ft2", Quantity::stress, kPoundForce / (144 * kInch * kInch)},
     {"kg/m3", Quantity::density, 1, true},
     {"g/cm3", Quantity::density, 1e3},
     {"kg/dm3", Quantity::density, 1e3},
@@ -82,22 +87,26 @@ constexpr Unit kUnits[] = {
     {"mg", Quantity::mass, 1e-6, true},
     {"t", Quantity::mass, 1e3},
     {"lb", Quantity::mass, kPound},
+    {"oz", Quantity::mass, kPound / 16},
     {"MN", Quantity::force, 1e6, true},
     {"kN", Quantity::force, 1e3, true},
     {"N", Quantity::force, 1, true},
     {"mN", Quantity::force, 1e-3, true},
     {"kgf", Quantity::force, 9.80665},
     {"lbf", Quantity::force, kPoundForce},
+    {"kip", Quantity::force, 1e3 * kPoundForce},
     {"kN m", Quantity::torque, 1e3, true},
     {"N m", Quantity::torque, 1, true},
     {"N mm", Quantity::torque, 1e-3, true},
     {"kNm", Quantity::torque, 1e3},
     {"Nm", Quantity::torque, 1},
     {"Nmm", Quantity::torque, 1e-3},
-    {"lbf in", Quantity::torque, kInch * kPoundForce},
-    {"lbf ft", Quantity::torque, 12 * kInch * kPoundForce},
-    {"in lbf", Quantity::torque, kInch * kPoundForce},
-    {"ft lbf", Quantity::torque, 12 * kInch * kPoundForce},
+    {"lbf in", Quantity::torque, kInch* kPoundForce},
+    {"lbf ft", Quantity::torque, 12 * kInch* kPoundForce},
+    {"in lbf", Quantity::torque, kInch* kPoundForce},
+    {"ft lbf", Quantity::torque, 12 * kInch* kPoundForce},
+    {"kip in", Quantity::torque, 1e3 * kInch* kPoundForce},
+    {"kip ft", Quantity::torque, 12e3 * kInch* kPoundForce},
     {"m/s2", Quantity::acceleration, 1, true},
     {"mm/s2", Quantity::acceleration, 1e-3},
     {"in/s2", Quantity::acceleration, kInch},
@@ -151,7 +160,8 @@ const QuantityName& about(Quantity quantity) {
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
-// Bytes of `text` that spell `unit`, where the text may write m2 as m^2 or with a raised digit.
+// Bytes of `text` that spell `unit`, where the text may write m2 as m^2 or with a raised digit, and
+// N m with a dot.
 std::size_t spelled(std::string_view text, std::string_view unit) {
     std::size_t at = 0;
     for (char letter : unit) {
@@ -160,6 +170,10 @@ std::size_t spelled(std::string_view text, std::string_view unit) {
             at += 2;
         } else if (letter == '3' && rest.starts_with("\u00b3")) {
             at += 2;
+        } else if (letter == ' ' && rest.starts_with("\u00b7")) {
+            at += 2;
+        } else if (letter == ' ' && rest.starts_with("\u22c5")) {
+            at += 3;
         } else if (is_digit(letter) && rest.size() > 1 && rest[0] == '^' && rest[1] == letter) {
             at += 2;
         } else if (!rest.empty() && rest[0] == letter) {
@@ -303,8 +317,8 @@ double parse_quantity(std::string_view text, Quantity wanted) {
     const std::optional<LeadingUnit> unit = leading_unit(rest);
     if (!unit || unit->size != rest.size()) {
         refuse(begin + at,
-               fmt::format("unknown unit \"{}\"{}; {}", rest,
-                           did_you_mean(rest, unit_names(wanted)), wanted_text(wanted)));
+               fmt::format("unknown unit \"{}\"{}", rest,
+                           hint_and(did_you_mean(rest, unit_names(wanted)), wanted_text(wanted))));
     }
     if (unit->quantity != wanted) {
         refuse(begin + at, fmt::format("\"{}\" is {}; {}", inner,

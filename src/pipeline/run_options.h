@@ -22,8 +22,10 @@ struct FrameRange {
 inline void refuse_frames_beyond(int count, const FrameRange& wanted, int first_frame = 1) {
     if (wanted.first >= 1 && wanted.last <= count) return;
     const int later = first_frame - 1;
-    fail(ExitCode::command_line, "--frames {}-{}: the run has the frames {} to {}",
-         wanted.first + later, wanted.last + later, 1 + later, count + later);
+    std::string asked = fmt::format("{}", wanted.first + later);
+    if (wanted.last != wanted.first) asked += fmt::format("-{}", wanted.last + later);
+    fail(ExitCode::command_line, "--frames {} is out of range: the run has the frames {} to {}",
+         asked, 1 + later, count + later);
 }
 
 // What becomes of a run that stands in the directory already.

@@ -49,11 +49,12 @@ std::vector<Node*> chosen(Node& array, const std::string& of, const std::string&
         }
     }
     if (found.empty()) {
-        mistakes.add(place, fmt::format("there is no {} \"{}\"{}; there {} {}: 1 to {}, or * for "
-                                        "all",
-                                        of, which, did_you_mean(which, names),
-                                        array.item.size() == 1 ? "is" : "are", array.item.size(),
-                                        array.item.size()));
+        mistakes.add(place,
+                     fmt::format("there is no {} \"{}\"{}", of, which,
+                                 hint_and(did_you_mean(which, names),
+                                          fmt::format("there {} {}: 1 to {}, or * for all",
+                                                      array.item.size() == 1 ? "is" : "are",
+                                                      array.item.size(), array.item.size()))));
     }
     return found;
 }

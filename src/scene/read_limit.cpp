@@ -39,8 +39,8 @@ void read_part(TableReader& table, const MachineSpec& machine, LimitSpec& limit)
     }
     if (contains(parts, limit.part)) return;
     table.mistake("part",
-                  fmt::format("machine {} has no tool or grip \"{}\"{}; it has {}", machine.name,
-                              limit.part, did_you_mean(limit.part, parts), known));
+                  fmt::format("machine {} has no tool or grip \"{}\"{}", machine.name, limit.part,
+                              hint_and(did_you_mean(limit.part, parts), "it has " + known)));
     limit.part.clear();
 }
 

@@ -158,7 +158,7 @@ TEST_CASE(
     const Outcome told = run_swage({"info", (out / "iron").string()});
     CHECK(told.code == 0);
     CHECK(told.out.find("1-bend: used ") != std::string::npos);
-    CHECK(run_swage({"info", scratch.path().string()}).code == 2);
+    CHECK(run_swage({"info", scratch.path().string()}).code == 5);
     Json damaged = Json::parse(bytes_of(out / "iron/run.json"));
     damaged.at("stages").at(0).erase("frames");
     put_text(out / "iron/run.json", damaged.dump());

@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 
+#include <fmt/format.h>
+
 #include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
@@ -112,4 +114,84 @@ TEST_CASE("a scene is read from standard input, its paths from the working direc
           std::string::npos);
     CHECK(in_shell("swage check - </", scratch.path())
               .err.find("stdin: standard input cannot be read: ") != std::string::npos);
+}
+
+TEST_CASE("what is missing is called as the usage calls it, and what is mistyped as what it is") {
+    const std::pair<const char*, const char*> missing[] = {{"run", "SCENE"},
+                                                           {"check", "SCENE"},
+                                                           {"info", "MESH"},
+                                                           {"render", "RUN"},
+                                                           {"export", "RUN"}};
+    for (const auto& [command, argument] : missing) {
+        const Outcome outcome = run_swage({command});
+        CHECK(outcome.code == 2);
+        CHECK(outcome.err.find(
+                  fmt::format("error: {1} is required: swage {0} {1}\n", command, argument)) == 0);
+    }
+    CHECK(run_swage({"make", "barr"})
+              .err.find("error: there is no shape \"barr\", did you mean \"bar\"?\n") == 0);
+    CHECK(run_swage({"materials", "coppr"})
+              .err.find("\"coppr\", did you mean \"copper\"? The command swage materials") !=
+          std::string::npos);
+    for (const char* range : {"abc", "1e999", "3x", ""}) {
+        const Outcome outcome = run_swage({"render", "somewhere", "--color-range", "0", range});
+        CHECK(outcome.code == 2);
+        CHECK(outcome.err.find(fmt::format("error: --color-range: \"{}\" is not a finite number\n",
+                                           range)) == 0);
+    }
+}
+
+TEST_CASE("a key is told with its section before it, as --set has it") {
+    const auto keys = [](const std::string& word) { return run_swage({"keys", word}); };
+    const Outcome color = keys("render.color");
+    CHECK(color.code == 0);
+    CHECK(color.out.find("[render]\n  color  ") == 0);
+    CHECK(color.out.find("[mesh]") == std::string::npos);
+    CHECK(keys("render.camera").out.find("azimuth") != std::string::npos);
+    CHECK(keys("stage.2.frames").out.find("[[stage]]\n  frames  ") == 0);
+    CHECK(keys("stage.1.load.1.force").out.find("[[stage.load]]\n  force  ") == 0);
+    CHECK(keys("material.yield_stress").code == 0);
+    const Outcome none = keys("stage.1.angle");
+    CHECK(none.code == 2);
+    CHECK(none.err.find("swage machines NAME lists those of a machine") != std::string::npos);
+    CHECK(keys("render.colr").code == 2);
+    CHECK(keys("units").out.find("kip") != std::string::npos);
+}
+
+TEST_CASE("what is not there ends with the code of what it would be") {
+    const Scratch scratch;
+    const std::string scene = put_small_scene(scratch.path(), 1).string(),
+                      none = (scratch.path() / "none").string();
+    fs::create_directory(scratch.path() / "empty");
+    const auto code = [&](const std::vector<std::string>& words) {
+        return run_swage(words, scratch.path()).code;
+    };
+    for (const char* command : {"run", "check"}) {
+        CHECK(code({command, none + ".toml"}) == 3);
+        CHECK(code({command, scene, "--set", "stage.1.machine=none.toml"}) == 3);
+        CHECK(code({command, scene, "--set", "stage.1.machine=none"}) == 3);
+        CHECK(code({command, scene, "--set", "mesh.file=none.obj"}) == 4);
+    }
+    CHECK(code({"machines", none + ".toml"}) == 3);
+    CHECK(code({"info", none + ".obj"}) == 4);
+    for (const char* command : {"render", "export"}) CHECK(code({command, none}) == 5);
+    for (const char* command : {"render", "export", "info"}) CHECK(code({command, "empty"}) == 5);
+    for (const char* command : {"machines", "materials", "keys", "make", "verify", "help"}) {
+        CHECK(code({command, "none"}) == 2);
+    }
+}
+
+TEST_CASE("info repeats what a run warned of") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 1), run = scratch.path() / "run";
+    const auto info = [&] { return run_swage({"info", run.string()}).out; };
+    REQUIRE(run_swage({"run", scene.string(), "--no-render", "--out", run.string()}).code == 0);
+    Json record = Json::parse(bytes_of(run / "run.json"));
+    record["warnings"] = {"1-bend: it slipped", "2-cut: it missed"};
+    put_text(run / "run.json", record.dump());
+    CHECK(info().find("  warning      1-bend: it slipped\n  warning      2-cut: it missed\n") !=
+          std::string::npos);
+    record["warnings"] = 3;
+    put_text(run / "run.json", record.dump());
+    CHECK(run_swage({"info", run.string()}).code == 5);
 }

@@ -67,7 +67,7 @@ TEST_CASE("a run at 23.976 from frame 1001 on is so in names, film, times and US
     CHECK_FALSE(fs::exists(out / "frames/frame_1002.png"));
     const Outcome beyond = draw({"--frames", "3"});
     CHECK(beyond.code == 2);
-    CHECK(beyond.err.find("--frames 3-3: the run has the frames 1001 to 1004") !=
+    CHECK(beyond.err.find("--frames 3 is out of range: the run has the frames 1001 to 1004") !=
           std::string::npos);
     CHECK(draw({"--frames", "3", "--first-frame", "1"}).code == 0);
     CHECK(fs::exists(out / "frames/frame_0003.png"));

@@ -177,6 +177,8 @@ TEST_CASE("passes lie beside the stills of a run whose scene asks for them, and 
     CHECK(table.find("1-bend") != std::string::npos);
     CHECK(names({"--frames", "3", "--passes", "depth"}) ==
           Names{"frame_0003.png", "frame_0003.depth.exr"});
+    CHECK(names({"--frames", "3", "--passes", " depth, matte"}) ==
+          names({"--frames", "3", "--passes", "depth,matte"}));
     CHECK(names({"--frames", "3", "--passes", "none"}) == Names{"frame_0003.png"});
     const Outcome refused = drawable.draw(drawable.out(), {"--passes", "depth,mate"});
     CHECK(refused.code == 2);

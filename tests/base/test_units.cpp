@@ -65,6 +65,19 @@ TEST_CASE("a quantity has the value of its unit, however it is spelled") {
         {"10 lbf", Quantity::force, 44.482216152605},
         {"1 lbf ft", Quantity::torque, 1.3558179483314004},
         {"1 ft lbf", Quantity::torque, 1.3558179483314004},
+        {"1 kip", Quantity::force, 4448.2216152605},
+        {"2 kip ft", Quantity::torque, 2711.6358966628008},
+        {"12 kip in", Quantity::torque, 1355.8179483314004},
+        {"2 yd", Quantity::length, 1.8288},
+        {"10 mil", Quantity::length, 2.54e-4},
+        {"60 mph", Quantity::speed, 26.8224},
+        {"16 oz", Quantity::mass, 0.45359237},
+        {"1000 lbf/in2", Quantity::stress, 6894757.293168361},
+        {"144 lbf/ft^2", Quantity::stress, 6894.757293168361},
+        {"3 N\u00b7m", Quantity::torque, 3},
+        {"3 kN\u22c5m", Quantity::torque, 3000},
+        {"3 lbf\u00b7ft", Quantity::torque, 4.067453844994201},
+        {"3 Pa\u00b7s/m", Quantity::drag, 3},
         {"32 ft/s2", Quantity::acceleration, 9.7536},
         {"1000 psi", Quantity::stress, 6894757.293168361},
         {"36 ksi", Quantity::stress, 36 * 6894757.293168361},
@@ -93,7 +106,9 @@ TEST_CASE("what is no quantity is refused with place and reason") {
         {"1e5x", Quantity::number, "3: unknown unit \"x\"; expected a plain number"},
         {"18 cm long", Quantity::length, "3: unknown unit \"cm long\"; expected a length"},
         {"1.2.3", Quantity::number, "3: unknown unit \".3\""},
-        {"3 mpa", Quantity::stress, "2: unknown unit \"mpa\", did you mean \"MPa\"?"},
+        {"3 mpa", Quantity::stress,
+         "2: unknown unit \"mpa\", did you mean \"MPa\"? Expected a stress (GPa, MPa, "},
+        {"3 N\u00b7", Quantity::force, "2: unknown unit "},
         {"3 kg", Quantity::length, "2: \"3 kg\" is a mass; expected a length"},
         {"3 m", Quantity::number, "2: \"3 m\" is a length; expected a plain number"},
         {"0x10", Quantity::number, "0: \"0x10\" is hexadecimal"},
@@ -166,6 +181,10 @@ TEST_CASE("a mistyped word finds what it was meant to be") {
     CHECK(nearest_word("", known).empty());
     CHECK(nearest_word(std::string(100000, 'a'), known).empty());
     CHECK(did_you_mean("densty", known) == ", did you mean \"density\"?");
+    CHECK(hint_and(", did you mean \"density\"?", "expected one") ==
+          ", did you mean \"density\"? Expected one");
+    CHECK(hint_and("", "expected one") == "; expected one");
+    CHECK(hint_and("", "") == "; ");
     CHECK(edit_distance("abcd", "abdc") == 1);
     CHECK(edit_distance("", "abc") == 3);
 }

@@ -31,7 +31,7 @@ TEST_CASE("control characters that a scene names are shown, and cut no sentence 
     INFO(text);
     CHECK(text.find("the mesh \"\\x1b[31mX\" does not exist") != std::string::npos);
     CHECK(text.find("unknown unit \"cm\\x00\"") != std::string::npos);
-    CHECK(text.find("expected a length (m, cm, ") != std::string::npos);
+    CHECK(text.find("? Expected a length (m, cm, ") != std::string::npos);
     CHECK(mistakes_in(Parts().text() + "\"\\u009b2J\" = 1\n").find("key \"\\x9b2J\"") !=
           std::string::npos);
 }

@@ -39,7 +39,7 @@ TEST_CASE("mistakes in limits are found at their place") {
         {"of no part", limit("force = \"2 kN\"\n"), {"9:1: [[stage.limit]] needs \"part\": "}},
         {"of an unknown part",
          limit("part = \"lefd\"\nforce = \"2 kN\"\n"),
-         {"10:8: machine bend has no tool or grip \"lefd\", did you mean \"left\"?; it has "
+         {"10:8: machine bend has no tool or grip \"lefd\", did you mean \"left\"? It has "
           "support, left, right"}},
         {"of both",
          limit("part = \"left\"\nforce = \"2 kN\"\ntorque = \"2 N m\"\n"),
