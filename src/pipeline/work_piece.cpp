@@ -196,6 +196,12 @@ std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
     std::vector<InputMesh> input;
     for (const BodySpec& body : scene.body) {
         input.push_back(read_input_mesh(body.mesh, body.mold.kind, scene.skin.crease_angle));
+        if (!body.gives_look || !hides_material(body, input.back().mesh)) continue;
+        input.back().finding.push_back(
+            fmt::format("{}: the mesh file says how it looks, so the look of the material is not "
+                        "seen: look = \"material\" beside file shows it",
+                        body.label()));
+        log_warning("{}", input.back().finding.back());
     }
     return input;
 }

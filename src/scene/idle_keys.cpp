@@ -11,6 +11,7 @@
 #include "geometry/mesh_read.h"
 #include "laws/spring_moduli.h"
 #include "scene/expressions.h"
+#include "scene/stage_doubts.h"
 
 namespace swage {
 
@@ -190,7 +191,36 @@ const std::vector<IdleKey> kOfSkins = {
      }},
 };
 
+// Whether anything of the machine goes by it as a time.
+bool names_duration(const MachineSpec& machine) {
+    const auto in = [](const Expression& one) {
+        return one.text.find("duration") != std::string::npos;
+    };
+    const auto moves_by_it = [&](const auto& parts) {
+        return std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
+            return in(part.motion.turn) ||
+                   std::any_of(part.motion.move.begin(), part.motion.move.end(), in);
+        });
+    };
+    return moves_by_it(machine.tool) || moves_by_it(machine.grip) || moves_by_it(machine.blade) ||
+           in(machine.gravity_strength) ||
+           std::any_of(machine.load.begin(), machine.load.end(),
+                       [&](const LoadSpec& load) { return in(load.strength); });
+}
+
 const std::vector<IdleKey> kOfStages = {
+    {"remold",
+     [](const Section& at) -> std::string {
+         return at.stage->remold && at.stage == &at.scene.stage.front()
+                    ? " in the first stage, whose matter has just been molded"
+                    : "";
+     }},
+    {"duration",
+     [](const Section& at) -> std::string {
+         return relaxes(*at.stage) && !names_duration(at.stage->machine)
+                    ? with_solver(at) + ", but on the times in curves"
+                    : "";
+     }},
     {"tolerance", unless_it_relaxes},
     {"iteration_limit", unless_it_relaxes},
     {"halving_limit", unless_it_relaxes},
@@ -312,6 +342,7 @@ void warn_of_idle_keys(const Node& root, const SceneSpec& scene, MistakeList& mi
     }
     judge(kOfRender, {section(root, "render"), scene}, mistakes);
     judge_fields(section(root, "output"), scene, mistakes);
+    warn_of_doubtful_stages(root, scene, mistakes);
 }
 
 }  // namespace swage

@@ -142,6 +142,7 @@ void BodyReader::read_material_key(TableReader& table, SceneSpec& scene, BodySpe
     body.look.reset();
     TableReader material(*node, "[body.material]", reading_);
     read_material(material, assets_, scene_folder_, body.material, body.look, scene.inputs);
+    body.gives_look = material.find("look") != nullptr;
 }
 
 void BodyReader::read(const Node& node, SceneSpec& scene) {
@@ -149,6 +150,7 @@ void BodyReader::read(const Node& node, SceneSpec& scene) {
     BodySpec body;
     body.material = scene.work_piece().material;
     body.look = scene.work_piece().look;
+    body.gives_look = scene.work_piece().gives_look;
     body.mold = scene.work_piece().mold;
     read_name(table, scene, body);
     read_file(table, scene_folder_, "the mesh of the body", body.mesh);

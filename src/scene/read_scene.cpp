@@ -138,6 +138,7 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     BodySpec& work_piece = scene.body.emplace_back();
     read_mesh_section(mesh, folder, work_piece);
     read_material(material, assets, folder, work_piece.material, work_piece.look, scene.inputs);
+    work_piece.gives_look = material.find("look") != nullptr;
     refuse_look(mesh, work_piece);
     work_piece.gives_damping =
         work_piece.material.damping_ratio > 0 && material.find("damping_ratio");

@@ -61,6 +61,7 @@ struct BodySpec {
     bool wears_material = false;    // looks as its material does whatever its file says
     Material material;
     std::optional<SurfaceMaterial> look;  // of that, where anyone says
+    bool gives_look = false;              // the scene does
     bool gives_damping = false;           // its own, not what a known material has
     std::vector<InsetSpec> inset;
     std::vector<ProbeSpec> probe;

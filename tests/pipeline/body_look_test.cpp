@@ -2,8 +2,10 @@
 #include "pipeline/body_look.h"
 
 #include "geometry/make_shape.h"
+#include "geometry/mesh_write.h"
 #include "pipeline/work_piece.h"
 #include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
 #include "tests/shared/meshes.h"
 
 using namespace swage;
@@ -50,6 +52,25 @@ TEST_CASE("a mesh without a look has its material's, whatever draws it") {
     plain.mold.across = 3;
     CHECK(make_work_piece(bar(false), plain, {kind}).skin.material.front().color ==
           SurfaceMaterial().color);
+}
+
+TEST_CASE("that a look which the scene gives is hidden by the mesh's own is told as it is read") {
+    const Scratch scratch;
+    write_obj(scratch.path() / "bar.obj", bar(true).mesh);
+    SceneSpec scene;
+    BodySpec body = body_of(kIce);
+    body.mesh.file = scratch.path() / "bar.obj";
+    const auto told = [&](bool gives_look, bool wears_material) {
+        body.gives_look = gives_look;
+        body.wears_material = wears_material;
+        scene.body = {body};
+        return read_input_meshes(scene).at(0).finding;
+    };
+    REQUIRE(told(true, false).size() == 1);
+    CHECK(told(true, false)[0].find("bar: the mesh file says how it looks, so the look of the "
+                                    "material is not seen: look = \"material\"") == 0);
+    CHECK(told(false, false).empty());
+    CHECK(told(true, true).empty());
 }
 
 TEST_CASE("a mesh keeps the look, the texture and the colours that it brings") {

@@ -320,7 +320,7 @@ TEST_CASE("values out of range are refused with the range") {
         {"key without time", render("camera = {keys = [{zoom = 2}]}"), {"needs \"at\""}},
         {"zoom 0", render("camera = {zoom = 0}"), {"zoom = 0 is out of range"}},
     });
-    CHECK(mistakes_in(stage("gravity = -0.0\nangle = \"-0 deg\"").text()) == "");
+    CHECK(mistakes_in(stage("gravity = -0.0\nplace = -0.0").text()) == "");
     CHECK(mistakes_in(stage("angle = \"180 deg\"").text()) == "");  // the end itself is allowed
 }
 

@@ -111,7 +111,7 @@ contact_stiffness = 3
 grip_stiffness = 30
 self_contact = true
 gravity = "9.81 m/s2"
-gravity_strength = "0.5 + t/2"
+gravity_strength = "0.5 + t*duration/4"
 angle = "-0.5 turn"
 [[stage.load]]
 name = "books"
@@ -186,7 +186,7 @@ meshes_per_frame = true
     CHECK(stage.sim.gravity == Vec3(0, -9.81, 0));
     CHECK(stage.parameter.at("angle") == Approx(-kPi));
     CHECK(stage.sim.self_contact);
-    CHECK(stage.machine.gravity_strength == "0.5 + t/2");
+    CHECK(stage.machine.gravity_strength == "0.5 + t*duration/4");
     REQUIRE(stage.machine.load.size() == 2);
     const LoadSpec& books = stage.machine.load[0];
     CHECK(books.name == "books");

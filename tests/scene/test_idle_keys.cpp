@@ -189,6 +189,74 @@ TEST_CASE(
     CHECK(with_mesh(plain.string()).empty());
 }
 
+TEST_CASE("what a stage says in vain is told") {
+    const std::string stage = "[[stage]]\nmachine = \"";
+    const auto of = [&](const std::string& lines) {
+        return with(&Parts::stage, stage + lines + "\n");
+    };
+    check_all({
+        {"nothing to mold anew",
+         of("bend\"\nremold = true"),
+         {"9:10: warning: remold has no effect in the first stage, whose matter has just been"}},
+        {"a time of equilibria",
+         of("bend\"\nduration = \"1 s\""),
+         {"9:12: warning: duration has no effect with solver = \"quasistatic\", but on the times"}},
+        {"no angle",
+         of("bend\"\nangle = 0"),
+         {"9:9: warning: angle is 0, so machine bend does nothing to the work-piece"}},
+        {"no depth", of("press\"\ndepth = 0"), {"9:9: warning: depth is 0, so machine press"}},
+        {"no force",
+         of("hold\"\n[[stage.load]]\nforce = [0, \"0 N\", 0]"),
+         {"9:1: warning: load load_1 does nothing: its force is 0"}},
+        {"no pressure",
+         of("hold\"\n[[stage.load]]\nname = \"wind\"\npressure = 0\non = \"top\""),
+         {"9:1: warning: load wind does nothing: its pressure is 0"}},
+        {"no strength",
+         of("hold\"\n[[stage.load]]\nforce = [0, \"9 N\", 0]\nstrength = 0"),
+         {"9:1: warning: load load_1 does nothing: its strength is 0"}},
+    });
+    for (const char* right : {
+             "bend\"\n[[stage]]\nmachine = \"twist\"\nremold = true",
+             "bend\"\nremold = false",
+             "bend\"\nduration = \"1 s\"\nsolver = \"explicit\"",
+             "hold\"\nduration = \"1 s\"\n[[stage.load]]\nforce = [0, \"9 N\", 0]\n"
+             "strength = \"sin(2*pi*t*duration)\"",
+             "twist\"\nangle = 0\nstretch = 0.1",
+             "cut\"\ntilt = 0\nrising = 0",
+             "hold\"\n[[stage.load]]\nforce = [0, \"0 N\", \"1 N\"]",
+         }) {
+        INFO(right);
+        CHECK(mistakes_in(of(right).text()).empty());
+    }
+}
+
+TEST_CASE("stages in which down is elsewhere are told, unless nothing says what is down") {
+    const auto two = [&](const std::string& first, const std::string& second) {
+        return with(&Parts::stage, "[[stage]]\nmachine = \"" + first + "\n[[stage]]\nmachine = \"" +
+                                       second + "\n");
+    };
+    const std::string floor = "floor\"\ngravity = 9.81";
+    check_all({
+        {"two floors",
+         two(floor, floor + "\nup = \"z\""),
+         {"13:6: warning: down is -z in stage 2-floor, but -y in stage 1-floor: unless that is "}},
+        {"a machine that takes hold, with gravity",
+         two(floor + "\nup = \"z\"", "hold\"\ngravity = 9.81"),
+         {"13:11: warning: down is -y in stage 2-hold, but -z in stage 1-floor"}},
+        {"a shelf without gravity",
+         two(floor + "\nup = \"z\"",
+             "shelf\"\n[[stage.load]]\nforce = "
+             "[0, \"-9 N\", 0]"),
+         {"12:11: warning: down is -y in stage 2-shelf, but -z"}},
+        {"gravity by three numbers",
+         two(floor, "hold\"\ngravity = [0, -3, 9]"),
+         {"12:11: warning: down is [0, -0.316, 0.949] in stage 2-hold, but -y in stage 1-floor"}},
+    });
+    CHECK(mistakes_in(two(floor, "bend\"\nup = \"z\"").text()).empty());
+    CHECK(mistakes_in(two(floor, "hold\"\ngravity = [0, -9, 3]").text()).empty());  // a slope
+    CHECK(mistakes_in(two(floor + "\nup = \"z\"", floor + "\nup = \"z\"").text()).empty());
+}
+
 TEST_CASE("no shipped scene has a key without effect") {
     for (const auto& file : std::filesystem::directory_iterator(
              std::filesystem::path(SWAGE_SOURCE_DIR) / "assets/scenes")) {

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/stage_doubts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/expression.h"
+#include "base/text_error.h"
+
+namespace swage {
+
+namespace {
+
+// A number that does not depend on anything, and is 0.
+bool is_zero(const Expression& one) {
+    if (one.empty()) return false;
+    try {
+        const Formula formula(one.text, {});
+        return formula.evaluate({}) == 0;
+    } catch (const TextError&) {
+        return false;
+    }
+}
+
+// What is given as none of what the machine is for; it goes through its motions all the same.
+void judge_nothing_asked(const Node& node, const StageSpec& stage, MistakeList& mistakes) {
+    const auto is_given = [&](const char* parameter) {
+        const auto at = stage.parameter.find(parameter);
+        return at != stage.parameter.end() && at->second != 0;
+    };
+    for (const char* name : {"angle", "depth", "strain"}) {
+        const auto at = stage.parameter.find(name);
+        // A twist may draw all the same.
+        if (at == stage.parameter.end() || at->second != 0 || is_given("lift") ||
+            is_given("stretch")) {
+            continue;
+        }
+        mistakes.warn(stage.parameter_place.at(name),
+                      fmt::format("{} is 0, so machine {} does nothing to the work-piece", name,
+                                  stage.machine.name));
+    }
+    const Entry* given = node.find("load");
+    const std::size_t loads = given != nullptr ? given->value.item.size() : 0;
+    if (loads > stage.machine.load.size()) return;
+    for (std::size_t n = 0; n < loads; ++n) {
+        // Those of the machine's file come first.
+        const LoadSpec& load = stage.machine.load[stage.machine.load.size() - loads + n];
+        const bool is_none = load.force
+                                 ? std::all_of(load.force->begin(), load.force->end(), is_zero)
+                                 : is_zero(load.pressure);
+        if (!is_none && !is_zero(load.strength)) continue;
+        mistakes.warn(given->value.item[n].place,
+                      fmt::format("load {} does nothing: its {} is 0", load.name,
+                                  !is_none     ? "strength"
+                                  : load.force ? "force"
+                                               : "pressure"));
+    }
+}
+
+// Which way is down in a stage, where anything says so.
+std::optional<Vec3> down_of(const StageSpec& stage) {
+    if (stage.sim.gravity != Vec3::Zero()) return stage.sim.gravity.normalized();
+    if (!stage.machine.upright) return std::nullopt;
+    return -direction_of(stage.up == WorldAxis::automatic ? WorldAxis::y : stage.up);
+}
+std::string way_text(const Vec3& way) {
+    for (int n = 1; n <= 6; ++n) {
+        const auto axis = static_cast<WorldAxis>(n);
+        if (direction_of(axis).dot(way) > 1 - 1e-6) return name_of(axis);
+    }
+    return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", way.x(), way.y(), way.z());
+}
+
+// Bodies do not turn between machines, so they would fall to another side.
+void judge_downs(const Node& root, const SceneSpec& scene, MistakeList& mistakes) {
+    constexpr double kAlike = 0.7;  // cosine of just beyond 45 degrees: slopes are meant
+    const StageSpec* first = nullptr;
+    const Entry* stages = root.find("stage");
+    for (std::size_t s = 0; s < scene.stage.size(); ++s) {
+        const StageSpec& stage = scene.stage[s];
+        const std::optional<Vec3> down = down_of(stage);
+        if (!down) continue;
+        if (first == nullptr) first = &stage;
+        const Vec3 there = *down_of(*first);
+        if (down->dot(there) > kAlike) continue;
+        Place place = stage.place;
+        for (const char* key : {"gravity", "up"}) {
+            const bool is_there = stages != nullptr && s < stages->value.item.size();
+            const Entry* given = is_there ? stages->value.item[s].find(key) : nullptr;
+            if (given != nullptr) place = given->value.place;
+        }
+        mistakes.warn(place,
+                      fmt::format("down is {} in stage {}, but {} in stage {}: unless that "
+                                  "is meant give both the same up and gravity",
+                                  way_text(*down), stage.name, way_text(there), first->name));
+    }
+}
+
+}  // namespace
+
+void warn_of_doubtful_stages(const Node& root, const SceneSpec& scene, MistakeList& mistakes) {
+    const Entry* stages = root.find("stage");
+    for (std::size_t s = 0; s < scene.stage.size(); ++s) {
+        if (stages == nullptr || s >= stages->value.item.size()) break;
+        judge_nothing_asked(stages->value.item[s], scene.stage[s], mistakes);
+    }
+    judge_downs(root, scene, mistakes);
+}
+
+}  // namespace swage
