@@ -144,6 +144,7 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         const std::string whose = cost.place.size() == 1 ? "" : place.stage + ": ";
         const std::string when = is_later ? " (for the work-piece before the first stage)" : "";
         if (!place.axes.empty()) line("axes", whose + place.axes + when);
+        if (!place.tools.empty()) line("tools", whose + place.tools + when);
         for (const std::string& load : place.load) line("load", whose + load + when);
         for (const std::string& limit : place.limit) line("limit", whose + limit);
     }

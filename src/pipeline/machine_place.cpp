@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
+#include "base/expression.h"
 #include "base/portable_math.h"
+#include "base/text.h"
+#include "base/text_error.h"
 #include "geometry/mesh_check.h"
 #include "pipeline/limit_watch.h"
 #include "pipeline/stage_machine.h"
@@ -98,6 +102,46 @@ Json loads_json(const Machine& machine) {
     return json;
 }
 
+std::string tools_text(const StageSpec& stage, const WorkFrame& frame) {
+    std::vector<std::string> names;
+    std::optional<Vec3> from;  // by the machine
+    for (const ToolSpec& tool : stage.machine.tool) {
+        if (tool.motion.stands()) continue;
+        Vec3 way;
+        try {
+            for (int k = 0; k < 3; ++k) way[k] = -Formula(tool.touch[k].text, {}).evaluate({});
+        } catch (const TextError&) {  // it goes by the work-piece
+            return {};
+        }
+        if (way.isZero() || (from && from->dot(way) <= 0)) return {};
+        from = way;
+        names.push_back(tool.name);
+    }
+    int along;
+    if (!from || from->cwiseAbs().maxCoeff(&along) < 0.99 * from->norm()) return {};
+    const WorldAxis side = world_axes(frame)[along];
+    const bool turns = (*from)[along] < 0;
+    const auto [x, y, z] = world_axes(frame);
+    const auto opposite = [](WorldAxis axis) {
+        const int n = static_cast<int>(axis) - 1;
+        return static_cast<WorldAxis>((n ^ 1) + 1);
+    };
+    std::string text =
+        fmt::format("{} come{} from the world's {} (the machine's {}{}, set by {})",
+                    joined(names, " and "), names.size() == 1 ? "s" : "",
+                    name_of(turns ? opposite(side) : side), turns ? "-" : "", "xyz"[along],
+                    along == 0   ? "axis"
+                    : along == 1 ? "up"
+                                 : "axis and up");
+    // What bends goes by the longest side; what presses can do without.
+    const bool stands =
+        x == WorldAxis::y && stage.axis == WorldAxis::automatic && stage.up == WorldAxis::automatic;
+    if (along == 1 && stands && names.size() == 1) {
+        text += ", as the longest side is upright; axis = \"x\" or \"z\" brings it from y";
+    }
+    return text;
+}
+
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
                                          const Aggregate& work_piece,
                                          const std::vector<Material>& beside, const Box& skin) {
@@ -118,7 +162,8 @@ std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& 
                               axes_json(machine.frame),
                               loads_json(machine),
                               {},
-                              {}});
+                              {},
+                              tools_text(stage, machine.frame)});
         } catch (const Error&) {
             // It may stand at the work-piece of then.
             places.push_back({.stage = stage.name});
@@ -134,6 +179,7 @@ Json places_json(const std::vector<MachinePlace>& places) {
     for (const MachinePlace& place : places) {
         json.push_back({{"name", place.stage},
                         {"axes", place.axes_json},
+                        {"tools", place.tools},
                         {"loads", place.loads_json},
                         {"limits", place.limits_json}});
     }

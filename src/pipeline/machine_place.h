@@ -30,7 +30,12 @@ struct MachinePlace {
     Json axes_json{}, loads_json{};
     std::vector<std::string> limit{};  // as limit_texts()
     Json limits_json{};
+    std::string tools{};  // as tools_text()
 };
+
+// From which side of the world the tools come that are moved to the work-piece, and what sets that;
+// empty: not all from one side, or none.
+std::string tools_text(const StageSpec& stage, const WorkFrame& frame);
 
 // Of all stages. `first`: the machine of the first.
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,

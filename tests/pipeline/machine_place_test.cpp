@@ -44,6 +44,39 @@ TEST_CASE(
           std::vector<std::string>{"load_1 acts on 0.16 m2 about [80 cm, 0 m, 0 m]"});
     CHECK(json[1].at("loads").empty());
 
+    CHECK(places[0].tools.empty());  // it holds
+
     const Aggregate along_x = test::make_block(16, 4, 4, 0.1, scene.work_piece().material);
     CHECK(axes_text(stage_frame(scene.stage[0], along_x)) == "");
+}
+
+TEST_CASE("it is told from which side of the world tools come, and what brings them from above") {
+    const test::Scratch scratch;
+    const auto told = [&](const std::string& stage, const Aggregate& block) {
+        const SceneReading reading =
+            read_scene(scratch.write("s.toml",
+                                     "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
+                                     "[[stage]]\nmachine = " +
+                                         stage),
+                       {}, test::shipped());
+        REQUIRE(reading.scene);
+        const StageSpec& spec = reading.scene->stage[0];
+        return tools_text(spec, stage_frame(spec, block));
+    };
+    const Aggregate lies = test::make_block(16, 4, 4, 0.1, Material{}),
+                    stands = test::make_block(4, 16, 4, 0.1, Material{});
+    const std::string up = " (the machine's y, set by up)", y = " from the world's y" + up;
+    CHECK(told("\"press\"", lies) == "plate comes" + y);
+    CHECK(told("\"bend\"", lies) == "left and right come" + y);
+    CHECK(told("\"press\"\nup = \"-z\"", lies) == "plate comes from the world's -z" + up);
+    CHECK(told("\"press\"", stands) ==
+          "plate comes from the world's z" + up +
+              ", as the longest side is upright; axis = \"x\" or \"z\" brings it from y");
+    CHECK(told("\"bend\"", stands) == "left and right come from the world's z" + up);
+    for (const char* axis : {"x", "z"}) {
+        CHECK(told("\"press\"\naxis = \"" + std::string(axis) + "\"", stands) == "plate comes" + y);
+    }
+    for (const char* machine : {"hold", "floor", "wring", "twist"}) {
+        CHECK(told("\"" + std::string(machine) + "\"\n", lies).empty());
+    }
 }
