@@ -2,6 +2,7 @@
 #include "base/srgb.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
+#include "pipeline/checkpoint.h"
 #include "pipeline/frame_store.h"
 #include "pipeline/json.h"
 #include "pipeline/piece_track.h"
@@ -154,6 +155,31 @@ TEST_CASE("a blade severs a body that comes under it when another has been cut")
     const Json stage = Json::parse(bytes_of(out / "run.json")).at("stages").back();
     CHECK(stage.at("severed") > 40);  // 33 in the first
     CHECK(stage.at("pieces") == 3);
+}
+
+TEST_CASE("of two bodies the one that no blade cuts is not held as parted") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "beside.toml", out = scratch.path() / "out";
+    run_swage({"make", "bar", "--length", "20 cm", "--out", (scratch.path() / "bar.obj").string()});
+    const std::string bar = "file = \"bar.obj\"\n";
+    put_text(scene, "[mesh]\n" + bar +
+                        "[material]\nyoung_modulus = \"1 MPa\"\ndensity = \"1000 kg/m3\"\n"
+                        "[mold]\nacross = 2\n[[body]]\nname = \"beside\"\n" +
+                        bar +
+                        "at = [0, 0, \"1 m\"]\n[[stage]]\nmachine = \"cut\"\nframes = 4\n"
+                        "duration = \"20 ms\"\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    std::string why;
+    const std::optional<swage::Reached> reached = swage::read_checkpoint(
+        out / "resume/after-1.bin", swage::read_identity(out / ".swage-run").stage_key, why);
+    INFO(why);
+    REQUIRE(reached);
+    REQUIRE(reached->bodies.size() == 2);
+    CHECK(reached->bodies[0].is_parted);
+    CHECK_FALSE(reached->bodies[1].is_parted);
 }
 
 TEST_CASE("info calls what touches manifold by its numbers, and not by place") {
