@@ -37,8 +37,8 @@ std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error,
         if (!is_option && !commands.empty()) {
             if (!holds(commands, argument)) {
                 const std::string meant = did_you_mean(argument, commands);
-                std::string kind = command->get_formatter()->get_label("COMMAND");
-                for (char& c : kind) c = CLI::detail::to_lower(std::string(1, c))[0];
+                const std::string kind =
+                    CLI::detail::to_lower(command->get_formatter()->get_label("COMMAND"));
                 return fmt::format("there is no {} \"{}\"{}", kind, argument,
                                    meant.empty() ? ": " + joined(commands, ", ") : meant);
             }
