@@ -101,67 +101,84 @@ std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
                        quantity_text(scene.duration_of(stage), Quantity::time), speed);
 }
 
-std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                      const RunCost& cost) {
-    std::string text = scene.name + ": no mistakes\n";
-    const auto line = [&](const char* name, const std::string& value) {
-        text += fmt::format("  {:<12} {}\n", name, value);
-    };
+// "  cells        about 1,200 of 5 mm", one below the other.
+class Lines {
+  public:
+    explicit Lines(std::string title) : text_(std::move(title)) {}
+    void add(const char* name, const std::string& value) {
+        text_ += fmt::format("  {:<12} {}\n", name, value);
+    }
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string text_;
+};
+
+void add_matter(Lines& lines, const SceneSpec& scene, const std::vector<InputMesh>& input,
+                const RunCost& cost) {
     const char* about = cost.counted ? "" : "about ";
     const auto each = [&](const char* name, const auto& value) {
         for (std::size_t b = 0; b < scene.body.size(); ++b) {
-            line(name, (b == 0 ? "" : scene.body[b].name + ": ") + value(b));
+            for (const std::string& one : value(b)) {
+                lines.add(name, (b == 0 ? "" : scene.body[b].name + ": ") + one);
+            }
         }
     };
-    each("mesh", [&](std::size_t b) { return summary_line(input[b].report); });
+    using Texts = std::vector<std::string>;
+    each("mesh", [&](std::size_t b) { return Texts{summary_line(input[b].report)}; });
     each("cells", [&](std::size_t b) {
-        return fmt::format("{}{} of {}", about, count_text(cost.body[b].cells),
-                           length_text(cost.body[b].spacing));
+        return Texts{fmt::format("{}{} of {}", about, count_text(cost.body[b].cells),
+                                 length_text(cost.body[b].spacing))};
     });
-    line("particles", about + count_text(cost.mold.particles));
-    line("connections", about + count_text(cost.mold.connections));
-    for (std::size_t b = 0; b < scene.body.size(); ++b) {
-        const std::string whose = b == 0 ? "" : scene.body[b].name + ": ";
-        for (const std::string& one : accuracy_texts(scene.body[b], cost.body[b])) {
-            line("accuracy", whose + one);
-        }
-    }
+    lines.add("particles", about + count_text(cost.mold.particles));
+    lines.add("connections", about + count_text(cost.mold.connections));
+    each("accuracy", [&](std::size_t b) { return accuracy_texts(scene.body[b], cost.body[b]); });
     if (cost.tool_give > 0) {
         const double thickness = cost.work_piece().thickness;
-        line("tools", fmt::format("each tool's surface gives way like up to {:.2g} cells of the "
-                                  "work-piece, {:.2g} % of a part {:.3g} cells thick",
-                                  cost.tool_give, 100 * cost.tool_give / thickness, thickness));
+        lines.add("tools",
+                  fmt::format("each tool's surface gives way like up to {:.2g} cells of "
+                              "the work-piece, {:.2g} % of a part {:.3g} cells thick",
+                              cost.tool_give, 100 * cost.tool_give / thickness, thickness));
     }
-    for (const std::string& strength : cost.warning.strength) line("strength", strength);
-    for (std::size_t b = 0; b < scene.body.size(); ++b) {
-        if (!hides_material(scene.body[b], input[b].mesh)) continue;
-        line("look", (b == 0 ? "" : scene.body[b].name + ": ") +
-                         "as in the mesh file; look = \"material\" shows the material's");
-    }
-    line("stages", std::to_string(scene.stage.size()));
+    for (const std::string& strength : cost.warning.strength) lines.add("strength", strength);
+    each("look", [&](std::size_t b) {
+        if (!hides_material(scene.body[b], input[b].mesh)) return Texts{};
+        return Texts{"as in the mesh file; look = \"material\" shows the material's"};
+    });
+}
+
+void add_stages(Lines& lines, const SceneSpec& scene, const RunCost& cost) {
+    lines.add("stages", std::to_string(scene.stage.size()));
     for (const MachinePlace& place : cost.place) {
         const bool is_later = &place != &cost.place.front();
         const std::string whose = cost.place.size() == 1 ? "" : place.stage + ": ";
         const std::string when = is_later ? " (for the work-piece before the first stage)" : "";
-        if (!place.axes.empty()) line("axes", whose + place.axes + when);
-        if (!place.tools.empty()) line("tools", whose + place.tools + when);
-        for (const std::string& load : place.load) line("load", whose + load + when);
-        for (const std::string& limit : place.limit) line("limit", whose + limit);
+        if (!place.axes.empty()) lines.add("axes", whose + place.axes + when);
+        if (!place.tools.empty()) lines.add("tools", whose + place.tools + when);
+        for (const std::string& load : place.load) lines.add("load", whose + load + when);
+        for (const std::string& limit : place.limit) lines.add("limit", whose + limit);
     }
-    line("frames", count_text(cost.frames));
+    lines.add("frames", count_text(cost.frames));
     for (const StageSpec& stage : scene.stage) {
         if (!in_motion(stage.sim.solver)) continue;
         const std::string whose = scene.stage.size() == 1 ? "" : stage.name + ": ";
-        line("film", whose + film_text(scene, stage));
+        lines.add("film", whose + film_text(scene, stage));
     }
-    line("steps", range_text(cost.steps, count_text));
-    line("memory", fmt::format("about {}, of which the matter takes {}",
-                               bytes_text(cost.memory_bytes), bytes_text(cost.mold.bytes)));
-    line("disk", "about " + bytes_text(cost.disk_bytes));
-    line("time", range_text(cost.seconds, seconds_text) +
-                     (cost.hangs_on.empty() ? "" : ", depending on " + cost.hangs_on));
-    for (const std::string& note : cost.note) line("note", note);
-    return text;
+}
+
+std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                      const RunCost& cost) {
+    Lines lines(scene.name + ": no mistakes\n");
+    add_matter(lines, scene, input, cost);
+    add_stages(lines, scene, cost);
+    lines.add("steps", range_text(cost.steps, count_text));
+    lines.add("memory", fmt::format("about {}, of which the matter takes {}",
+                                    bytes_text(cost.memory_bytes), bytes_text(cost.mold.bytes)));
+    lines.add("disk", "about " + bytes_text(cost.disk_bytes));
+    lines.add("time", range_text(cost.seconds, seconds_text) +
+                          (cost.hangs_on.empty() ? "" : ", depending on " + cost.hangs_on));
+    for (const std::string& note : cost.note) lines.add("note", note);
+    return lines.text();
 }
 
 // Of the work-piece as "accuracy", of bodies beside it in their list; strengths of all in one.
