@@ -205,8 +205,8 @@ void ContactWay::find_met() {
     }
 }
 
-void ContactWay::take_moved(const Chunk& chunk) {
-    for (int n : chunk.moved) {
+void ContactWay::press_chunk(std::size_t chunk) {
+    for (int n : chunk_[chunk].moved) {
         Contact& contact = list_.contact[n];
         const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
         for (int c = 0; c < 8; ++c) {
@@ -215,8 +215,15 @@ void ContactWay::take_moved(const Chunk& chunk) {
             cell_push_.take(slot);
         }
     }
+    if (is_own()) return;
+    push_chunk(chunk);
+    pressed_.now += chunk_[chunk].held.now;
+    pressed_.gone += chunk_[chunk].held.gone;
+    pressed_.turned += chunk_[chunk].held.turned;
 }
 
+// A thread that is alone goes on with a chunk while it is near in memory: of two bodies a step's
+// contacts take a quarter less.
 void ContactWay::find(double step) {
     meeting_.resize(list_.size());
     if (is_own()) {
@@ -227,20 +234,17 @@ void ContactWay::find(double step) {
     for (Pushed* pushed : {&point_push_, &cell_push_}) {
         pushed->force.assign(std::size_t(pushed->high - pushed->low + 1), {});
     }
-    parallel_for(chunk_.size(), [&](std::size_t chunk) { find_chunk(chunk, step); });
+    pressed_ = {.gone = std::exchange(gone_, 0)};
+    at_once_ = thread_count() == 1;
+    parallel_for(chunk_.size(), [&](std::size_t chunk) {
+        find_chunk(chunk, step);
+        if (at_once_) press_chunk(chunk);
+    });
 }
 
 ContactWay::Held ContactWay::press() {
-    Held held{.gone = std::exchange(gone_, 0)};
-    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
-        take_moved(chunk_[chunk]);
-        if (is_own()) continue;
-        push_chunk(chunk);
-        held.now += chunk_[chunk].held.now;
-        held.gone += chunk_[chunk].held.gone;
-        held.turned += chunk_[chunk].held.turned;
-    }
-    return held;
+    for (std::size_t chunk = 0; chunk < chunk_.size() && !at_once_; ++chunk) press_chunk(chunk);
+    return pressed_;
 }
 
 void ContactWay::push(double share, double gone, double turned) {
@@ -287,11 +291,14 @@ void ContactWay::respond(double step, Meet meet) {
         if (!meeting_[n].is_known()) list_.memory[n] = {};
     }
     find_met();
-    parallel_for(chunk_.size(), [&](std::size_t chunk) { respond_chunk(chunk, step, meet); });
+    parallel_for(chunk_.size(), [&](std::size_t chunk) {
+        respond_chunk(chunk, step, meet);
+        if (at_once_) answer_chunk(chunk);
+    });
 }
 
 void ContactWay::answer() {
-    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) answer_chunk(chunk);
+    for (std::size_t chunk = 0; chunk < chunk_.size() && !at_once_; ++chunk) answer_chunk(chunk);
     sums_ = {};
     sums_.damped = 0.5 * broken_;
     sums_.friction = 0.5 * turned_;

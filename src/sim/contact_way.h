@@ -198,7 +198,7 @@ class ContactWay {
     }
     void share_own();
     void find_chunk(std::size_t chunk, double step);
-    void take_moved(const Chunk& chunk);
+    void press_chunk(std::size_t chunk);
     void find_met();
     void push_chunk(std::size_t chunk);
     void respond_chunk(std::size_t chunk, double step, Meet meet);
@@ -232,6 +232,8 @@ class ContactWay {
     // the lowest of point_push_ on [m/s]; empty: nothing touches that had not.
     std::vector<double> met_{};
     ContactSums sums_{};
+    bool at_once_ = false;  // find() presses too, and respond() answers
+    Held pressed_{};        // press()
 };
 
 }  // namespace swage
