@@ -2,6 +2,7 @@
 #include "sim/quasistatic.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +22,23 @@ constexpr double kForeseen = 0.5;  // spacings that anything is taken to go on
 constexpr double kSeated = 0.01;   // spacings that a rigid piece goes in the course of things
 // Spacings that a point of the work-piece may be in it where no equilibrium is found.
 constexpr double kDeepest = 0.2;
+
+// Nothing is idle by more than it seems to have done: what stands does nothing. What is left of
+// that is so of all work alike.
+void take_idle(const std::vector<double>& idle, std::vector<double>& work) {
+    double size = 0, left = 0;
+    for (double done : work) size += std::abs(done);
+    if (!(size > 0)) return;
+    std::vector<double> own(work.size());
+    for (std::size_t n = 0; n < work.size(); ++n) {
+        own[n] = std::clamp(idle[n], -std::abs(work[n]), std::abs(work[n]));
+        left += idle[n] - own[n];
+    }
+    left = std::clamp(left, -size, size);
+    for (std::size_t n = 0; n < work.size(); ++n) {
+        work[n] -= own[n] + std::abs(work[n]) / size * left;
+    }
+}
 
 }  // namespace
 
@@ -178,9 +196,8 @@ double QuasistaticSolver::share_to_yield(const StaticMove& move) {
     if (before > kLittleLoad * after) return 1;
     std::vector<double> work(load.size(), 0.0);
     add_work(move.from, move.to, load_, load, work);
-    const std::vector<double> idle = forces_.contacts.stroke(matter_, move.from, move.to).idle;
     const double all = std::accumulate(work.begin(), work.end(), 0.0);
-    const double air = std::accumulate(idle.begin(), idle.end(), 0.0), done = all - air;
+    const double done = all - forces_.contacts.air(matter_, move.from, move.to);
     // What flows has not flowed on the books.
     const double unyielding = elastic_energy() - move.elastic;
     if (!(done > 0) || unyielding < kBeyond * done) return 1;
@@ -199,12 +216,12 @@ void QuasistaticSolver::keep(const StaticMove& move, bool buckled, MoveOutcome& 
     std::vector<LoadSum> load = forces_.contacts.loads(matter_, move.to);
     std::vector<double> work(load_.size(), 0.0);
     add_work(move.from, move.to, load_, load, work);
+    slips_.keep(load, work, move.motion, move.released || breaks, outcome.lost);
+    take_idle(stroke.idle, work);
     for (std::size_t n = 0; n < work.size(); ++n) {
-        work[n] -= stroke.idle[n];
         body.work[n] += work[n];
         forces_.measure.carry(load[n].size);
     }
-    slips_.keep(load, work, move.motion, move.released || breaks, outcome.lost);
     load_ = std::move(load);
     forces_.pushes.commit(matter_, move.to, body.push_work);
     if (breaks) {

@@ -63,6 +63,9 @@ class RestingContacts {
         double friction = 0;  // taken by it [J]
     };
     Stroke stroke(const Aggregate& matter, const Drive& from, const Drive& to) const;
+    // What the trapezoid rule has of the way that tools go through the air before they touch at
+    // all, or after they have left [J]; also before commit().
+    double air(const Aggregate& matter, const Drive& from, const Drive& to) const;
 
     // The farthest that the surface of any tool near the body, or any gripped point, moves [m].
     double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
