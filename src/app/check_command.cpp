@@ -154,7 +154,7 @@ void add_stages(Lines& lines, const SceneSpec& scene, const RunCost& cost) {
         const std::string whose = cost.place.size() == 1 ? "" : place.stage + ": ";
         const std::string when = is_later ? " (for the work-piece before the first stage)" : "";
         if (!place.axes.empty()) lines.add("axes", whose + place.axes + when);
-        if (!place.tools.empty()) lines.add("tools", whose + place.tools + when);
+        if (!place.tools.empty()) lines.add("side", whose + place.tools + when);
         for (const std::string& load : place.load) lines.add("load", whose + load + when);
         for (const std::string& limit : place.limit) lines.add("limit", whose + limit);
     }

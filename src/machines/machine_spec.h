@@ -8,8 +8,8 @@
 // motions, grips, blades, loads and checks those of all tools. Motions and strengths of loads also
 // see t, 0 at the start of the stage and 1 at its end, duration, of the stage [s], and, but for
 // blades, stop: the t at which a limit was reached, 1 until then. What is to come no farther then
-// goes by min(t, stop). A part that is repeated sees which one it is as number, and a tool's motion the
-// middle of its own as NAME_x, NAME_y, NAME_z.
+// goes by min(t, stop). A part that is repeated sees which one it is as number, and a tool's motion
+// the middle of its own as NAME_x, NAME_y, NAME_z.
 //
 // The work frame stands at the centre of the work-piece's box: x along its length, y the way the
 // machine calls up, z across.
@@ -64,12 +64,12 @@ struct MotionSpec {
     bool stands() const { return turn == "0" && move == Expression3{"0", "0", "0"}; }
 };
 
-// A part may stand there several times, as many as `count` says; it uses no more than parameters that
-// do not depend on the work-piece, so that the parts are known as soon as these are.
+// A part may stand there several times, as many as `count` says; it uses no more than parameters
+// that do not depend on the work-piece, so that the parts are known as soon as these are.
 struct Repetition {
-    Expression count;      // empty: it is a single part
-    std::string name = ""; // of a single part that was repeated: without its number
-    int number = 0;        // of such a part, from 1
+    Expression count;       // empty: it is a single part
+    std::string name = "";  // of a single part that was repeated: without its number
+    int number = 0;         // of such a part, from 1
 
     bool is_open() const { return !count.empty(); }
 };

@@ -9,18 +9,25 @@ namespace swage {
 
 namespace {
 
+constexpr double kOff = 1e-9;  // a quotient may be off a whole number by so much
+
 int count_of(const Repetition& repeat, const std::string& whose, const Variables& known) {
-    const double count = evaluate(repeat.count, known);
-    if (count >= 0 && count <= kMostRepeats && count == std::floor(count)) return int(count);
+    std::string why = fmt::format("(\"{}\"): it must be a whole number from 0 to {}",
+                                  repeat.count.text, kMostRepeats);
+    try {
+        const double count = evaluate(repeat.count, known);
+        if (count >= 0 && count <= kMostRepeats && std::abs(count - std::round(count)) < kOff) {
+            return static_cast<int>(std::round(count));
+        }
+        why = fmt::format("is repeated {:.6g} times {}", count, why);
+    } catch (const PlacedError& error) {
+        why = fmt::format("is repeated an unknown number of times: {}", error.what());
+    }
     std::vector<std::string> names;
     for (const auto& [name, value] : known) names.push_back(name);
     const std::vector<std::string> used = Formula(repeat.count.text, names).used();
     throw ParameterError(
-        {{used.empty() ? "" : used.front(),
-          fmt::format(
-              "{} is repeated {:.6g} times (\"{}\"): it must be a whole number from 0 to {}", whose,
-              count, repeat.count.text, kMostRepeats),
-          repeat.count.place}});
+        {{used.empty() ? "" : used.front(), whose + " " + why, repeat.count.place}});
 }
 
 template <typename Part>

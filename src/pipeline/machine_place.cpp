@@ -102,9 +102,11 @@ Json loads_json(const Machine& machine) {
     return json;
 }
 
+constexpr double kOneSide = 0.99;  // cosine of what still is the same side
+
 std::string tools_text(const StageSpec& stage, const WorkFrame& frame) {
     std::vector<std::string> names;
-    std::optional<Vec3> from;  // by the machine
+    std::optional<Vec3> from;  // by the machine; unit
     for (const ToolSpec& tool : stage.machine.tool) {
         if (tool.motion.stands()) continue;
         Vec3 way;
@@ -113,12 +115,15 @@ std::string tools_text(const StageSpec& stage, const WorkFrame& frame) {
         } catch (const TextError&) {  // it goes by the work-piece
             return {};
         }
-        if (way.isZero() || (from && from->dot(way) <= 0)) return {};
-        from = way;
-        names.push_back(tool.name);
+        if (way.isZero()) return {};
+        way.normalize();
+        if (from && from->dot(way) < kOneSide) return {};
+        if (!from) from = way;
+        const std::string& name = tool.repeat.number > 0 ? tool.repeat.name : tool.name;
+        if (names.empty() || names.back() != name) names.push_back(name);
     }
     int along;
-    if (!from || from->cwiseAbs().maxCoeff(&along) < 0.99 * from->norm()) return {};
+    if (!from || from->cwiseAbs().maxCoeff(&along) < kOneSide) return {};
     const WorldAxis side = world_axes(frame)[along];
     const bool turns = (*from)[along] < 0;
     const auto [x, y, z] = world_axes(frame);

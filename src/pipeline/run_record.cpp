@@ -291,13 +291,15 @@ RunNames run_names_of(const Json& record) {
     try {
         names.scene = record.at("scene");
         for (const Json& body : record.at("bodies")) names.body.push_back(body.at("name"));
-        for (const Json& stage : record.value("stages", Json::array())) {
+        const Json stages = record.value("stages", Json::array());
+        for (const Json& stage : stages) {
             names.stage.push_back({stage.at("name"), stage.at("frames").at(1)});
-            const Json pieces = stage.value("skin_pieces", Json::object());
-            names.piece.clear();
+        }
+        if (!stages.empty()) {
+            const Json pieces = stages.back().value("skin_pieces", Json::object());
             for (const std::string& body : names.body) {
                 names.piece.push_back(
-                    {stage.at("frames").at(1), pieces.value(body, std::vector<int>())});
+                    {stages.back().at("frames").at(1), pieces.value(body, std::vector<int>())});
             }
         }
     } catch (const Json::exception&) {

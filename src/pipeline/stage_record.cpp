@@ -48,15 +48,22 @@ Json energies_json(const Books& books) {
     return json;
 }
 
-// Of each body in several pieces, a triangle of each in its skin, as they are numbered.
+// Of each body in several pieces, a triangle of each in its skin, as they are numbered: of the
+// outside, not of a cavity.
 Json skin_pieces_json(const std::vector<WorkPiece>& bodies) {
     Json json = Json::object();
     for (const WorkPiece& body : bodies) {
         const std::vector<int> piece = skin_pieces(body.skin, body.mount, body.matter);
+        const Components shells = surface_components(body.skin);
+        const std::vector<double> volume = component_volumes(body.skin, shells);
+        const auto volume_at = [&](std::size_t t) {
+            return volume[std::size_t(shells.triangle_component[t])];
+        };
         std::vector<std::size_t> triangle;
         for (std::size_t t = 0; t < piece.size(); ++t) {
             triangle.resize(std::max(triangle.size(), std::size_t(piece[t]) + 1), piece.size());
-            triangle[piece[t]] = std::min(triangle[piece[t]], t);
+            std::size_t& of_piece = triangle[std::size_t(piece[t])];
+            if (of_piece == piece.size() || volume_at(t) > volume_at(of_piece)) of_piece = t;
         }
         if (triangle.size() > 1) json[body.name] = triangle;
     }

@@ -217,8 +217,8 @@ const std::vector<IdleKey> kOfStages = {
      }},
     {"duration",
      [](const Section& at) -> std::string {
-         return relaxes(*at.stage) && !names_duration(at.stage->machine)
-                    ? with_solver(at) + ", but on the times in curves"
+         return !in_motion(at.stage->sim.solver) && !names_duration(at.stage->machine)
+                    ? with_solver(at) + ", except on the times in curves"
                     : "";
      }},
     {"tolerance", unless_it_relaxes},

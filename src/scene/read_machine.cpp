@@ -91,7 +91,7 @@ class MachineReader {
             for (const Part& part : parts_) {
                 if (!is_numbered(part.name, repeated.name)) continue;
                 mistakes_.add(part.place,
-                              fmt::format("\"{}\" is what a \"{}\" that is repeated is called; "
+                              fmt::format("\"{}\" is also the name of a repeated \"{}\"; "
                                           "choose another name",
                                           part.name, repeated.name));
             }
@@ -109,7 +109,7 @@ class MachineReader {
         ToolSpec tool;
         ExpressionReader expression = read_repeat(table, tool.repeat);
         tool.name = read_name(table, tool.repeat);
-        refuse_parameters_named_as(tool.name, table, machine);
+        refuse_parameters_named_as(tool, table, machine);
         read_shape(table, expression, tool);
         expression.read(table, "axis", Quantity::number, tool.axis);
         expression.expect_direction(table);
@@ -145,14 +145,18 @@ class MachineReader {
         machine.tool.push_back(std::move(tool));
     }
 
-    static void refuse_parameters_named_as(const std::string& tool, TableReader& table,
+    static void refuse_parameters_named_as(const ToolSpec& tool, TableReader& table,
                                            const MachineSpec& machine) {
         for (const ParameterSpec& parameter : machine.parameter) {
-            for (const std::string& middle : middle_names(tool)) {
-                if (parameter.name != middle) continue;
+            for (const std::string axis : {"_x", "_y", "_z"}) {
+                if (!parameter.name.ends_with(axis)) continue;
+                const std::string whose =
+                    parameter.name.substr(0, parameter.name.size() - axis.size());
+                const bool is_single = tool.repeat.is_open() && is_numbered(whose, tool.name);
+                if (whose != tool.name && !is_single) continue;
                 table.mistake("name", fmt::format("\"{}\" is a parameter, and would also be the "
                                                   "position of tool \"{}\"; choose another name",
-                                                  parameter.name, tool));
+                                                  parameter.name, whose));
             }
         }
     }

@@ -101,7 +101,7 @@ class ParametersReader {
         } else if (entry.key == kStop) {
             reason = "is the time at which a limit is reached";
         } else if (entry.key == kNumber) {
-            reason = "is which one a repeated part is";
+            reason = "is the number of a repeated part";
         } else if (is_work_piece_name(entry.key)) {
             reason = "is a variable of the work-piece";
         } else if (is_reserved_name(entry.key)) {

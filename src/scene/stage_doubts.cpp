@@ -30,11 +30,16 @@ void judge_nothing_asked(const Node& node, const StageSpec& stage, MistakeList& 
         const auto at = stage.parameter.find(parameter);
         return at != stage.parameter.end() && at->second != 0;
     };
-    for (const char* name : {"angle", "depth", "strain"}) {
+    constexpr std::pair<const char*, const char*> kEssential[] = {{"bend", "angle"},
+                                                                  {"twist", "angle"},
+                                                                  {"wring", "angle"},
+                                                                  {"press", "depth"},
+                                                                  {"stretch", "strain"}};
+    for (const auto& [machine, name] : kEssential) {
         const auto at = stage.parameter.find(name);
         // A twist may draw all the same.
-        if (at == stage.parameter.end() || at->second != 0 || is_given("lift") ||
-            is_given("stretch")) {
+        if (stage.machine.name != machine || at == stage.parameter.end() || at->second != 0 ||
+            is_given("lift") || is_given("stretch")) {
             continue;
         }
         mistakes.warn(stage.parameter_place.at(name),
@@ -86,14 +91,14 @@ void judge_downs(const Node& root, const SceneSpec& scene, MistakeList& mistakes
         const Vec3 there = *down_of(*first);
         if (down->dot(there) > kAlike) continue;
         Place place = stage.place;
-        for (const char* key : {"gravity", "up"}) {
+        for (const char* key : {"up", "gravity"}) {
             const bool is_there = stages != nullptr && s < stages->value.item.size();
             const Entry* given = is_there ? stages->value.item[s].find(key) : nullptr;
             if (given != nullptr) place = given->value.place;
         }
         mistakes.warn(place,
                       fmt::format("down is {} in stage {}, but {} in stage {}: unless that "
-                                  "is meant give both the same up and gravity",
+                                  "is meant, give both the same up and gravity",
                                   way_text(*down), stage.name, way_text(there), first->name));
     }
 }

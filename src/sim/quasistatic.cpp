@@ -24,10 +24,13 @@ constexpr double kSeated = 0.01;   // spacings that a rigid piece goes in the co
 constexpr double kDeepest = 0.2;
 
 // Nothing is idle by more than it seems to have done: what stands does nothing. What is left of
-// that is so of all work alike.
-void take_idle(const std::vector<double>& idle, std::vector<double>& work) {
+// that is so of all work alike, also that of `loads`, whose part of it stays in the remainder.
+void take_idle(const std::vector<double>& idle, const std::vector<double>& loads,
+               std::vector<double>& work) {
     double size = 0, left = 0;
-    for (double done : work) size += std::abs(done);
+    for (const auto* all : {&loads, &std::as_const(work)}) {
+        for (double done : *all) size += std::abs(done);
+    }
     if (!(size > 0)) return;
     std::vector<double> own(work.size());
     for (std::size_t n = 0; n < work.size(); ++n) {
@@ -216,14 +219,17 @@ void QuasistaticSolver::keep(const StaticMove& move, bool buckled, MoveOutcome& 
     std::vector<LoadSum> load = forces_.contacts.loads(matter_, move.to);
     std::vector<double> work(load_.size(), 0.0);
     add_work(move.from, move.to, load_, load, work);
+    // It judges what the trapezoid rule says.
     slips_.keep(load, work, move.motion, move.released || breaks, outcome.lost);
-    take_idle(stroke.idle, work);
+    std::vector<double> pushed(body.push_work.size(), 0.0);
+    forces_.pushes.commit(matter_, move.to, pushed);
+    take_idle(stroke.idle, pushed, work);
+    for (std::size_t n = 0; n < pushed.size(); ++n) body.push_work[n] += pushed[n];
     for (std::size_t n = 0; n < work.size(); ++n) {
         body.work[n] += work[n];
         forces_.measure.carry(load[n].size);
     }
     load_ = std::move(load);
-    forces_.pushes.commit(matter_, move.to, body.push_work);
     if (breaks) {
         const double done = std::accumulate(work.begin(), work.end(), 0.0);
         body.set_free += std::max(0.0, move.booked + done - booked(move.to, body));

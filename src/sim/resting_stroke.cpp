@@ -3,7 +3,7 @@
 // trapezoid rule (add_work()) has it that the force of a tool changes evenly over all of the way.
 // Where points come and leave it does not: as a plate rises from what springs back they leave it
 // one by one, and most of its force is gone long before the last of them. But whatever the order,
-// elastic matter gets from forces f that grow from f_0 to f_1 at points that move by u
+// matter that is elastic and linear gets from forces f that grow from f_0 to f_1 at points that move by u
 //
 //     W = 1/2 sum (f_0 + f_1) . u
 //
@@ -22,8 +22,6 @@
 // little of a body that its tools let go. What touches at one end only slides for a share of the
 // way, which the gap at the other end tells.
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include "laws/contact.h"
 #include "sim/resting_contacts.h"

@@ -82,6 +82,20 @@ TEST_CASE("a count of 0 leaves the part out, and what is single already stays as
     CHECK(again.tool[4].repeat.number == 5);
 }
 
+TEST_CASE("a count that rounding has put beside a whole number is that number") {
+    MachineSpec spec = rollers();
+    spec.parameter[0].quantity = Quantity::length;
+    spec.tool[0].repeat.count = "rolls/(10 cm)";
+    REQUIRE(0.3 / 0.1 != 3);
+    CHECK(with_single_parts(spec, {{"rolls", 0.3}}).tool.size() == 4);
+}
+
+TEST_CASE("a count without a value is told as a mistake of the parameter") {
+    MachineSpec spec = rollers();
+    spec.tool[0].repeat.count = "6/(rolls - 2)";
+    CHECK_THROWS_AS(with_single_parts(spec, {{"rolls", 2}}), ParameterError);
+}
+
 TEST_CASE("a count that is no whole number is told with the parameter that makes it so") {
     for (const double rolls : {2.5, -1.0, 101.0}) {
         try {

@@ -68,7 +68,7 @@ TEST_CASE("mistakes about repeated parts in machine files are found at their let
                         "work-piece") != std::string::npos);
     }
     CHECK(mistakes_of(kRolls + "repeat = 3\n" + kAt + end)
-              .find("\"roll_2\" is what a \"roll\" that is repeated is called; choose another "
+              .find("\"roll_2\" is also the name of a repeated \"roll\"; choose another "
                     "name") != std::string::npos);
     CHECK(
         mistakes_of(kRolls + "repeat = 3\n" + kAt +
@@ -76,8 +76,12 @@ TEST_CASE("mistakes about repeated parts in machine files are found at their let
                     "0]\n")
             .find("unknown name \"roll_x\": only its own motion sees the middle of a tool that "
                   "is repeated") != std::string::npos);
+    CHECK(mistakes_of("[parameter.roll_12_x]\nquantity = \"length\"\ndefault = 1\n" + kRolls +
+                      "repeat = 3\n" + kAt)
+              .find("\"roll_12_x\" is a parameter, and would also be the position of tool "
+                    "\"roll_12\"") != std::string::npos);
     CHECK(mistakes_of("[parameter.number]\nquantity = \"number\"\ndefault = 1\n[[grip]]\nname = "
                       "\"a\"\nfrom = [\"number\", 0, 0]\nto = [1, 1, 1]\n")
-              .find("the parameter's name \"number\" is which one a repeated part is; choose "
+              .find("the parameter's name \"number\" is the number of a repeated part; choose "
                     "another") != std::string::npos);
 }

@@ -284,7 +284,15 @@ TEST_CASE("the slicer parts a rod into slices of one thickness, together or in t
             CHECK(find_pieces(body).count == slices);
             // The middles of the slices are even, before and after.
             const Drive start = drive_at(machine, 0, 1), end = drive_at(machine, 1, 1);
+            const Drive open = drive_at(machine, 0.6 + machine.parameter.at("rising"), 1);
+            for (std::size_t n = 0; n < machine.apparatus.blade.size(); ++n) {
+                const Vec3 risen = open.world_from_blade[n].translation;
+                CHECK((risen - start.world_from_blade[n].translation).norm() < 1e-12);
+            }
             for (std::size_t n = 0; n < machine.apparatus.grip.size(); ++n) {
+                // No slice moves while a blade stands in its way.
+                CHECK((open.world_from_grip[n].translation - start.world_from_grip[n].translation)
+                          .norm() < 1e-12);
                 const double middle = double(n) - 0.5 * (slices - 1);
                 const double before = start.world_from_grip[n].translation.x();
                 CHECK(std::abs(before - middle / slices) <= 0.5 * body.lattice.spacing);

@@ -3,7 +3,7 @@
 #include "sim/advance.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
-#include "tests/sim/machines.h"
+#include "tests/sim/loads_fixture.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -79,4 +79,34 @@ TEST_CASE("a plate that leaves clay point by point takes back no more than the c
         }
         CHECK(std::abs(fine.remainder) < 0.0005 * fine.stored);
     }
+}
+TEST_CASE("what comes to stand under a load takes little from the work of a grip beside it") {
+    // A block that hangs is drawn down onto an anvil, as its grip sinks a little.
+    const auto worked = [](int moves) {
+        Aggregate block = make_block(4, 4, 4, 0.01, kSoft);
+        Apparatus apparatus;
+        apparatus.tool.push_back({"anvil", BoxShape{Vec3(0.2, 0.04, 0.2), 0.002}, 0});
+        apparatus.grip = {
+            hold(block, points_where(block, [](const Vec3& x) { return x.y() > 0.0199; }))};
+        apparatus.load = {
+            force_on(block, points_where(block, [](const Vec3& x) { return x.y() < -0.0199; }),
+                     Vec3(0, -8, 0))};
+        const auto at = [&](double t) {
+            Drive d = drive_of(apparatus, t, t);
+            d.world_from_tool = {{Quat::Identity(), Vec3(0, -0.04 - 1e-4, 0)}};
+            d.world_from_grip[0].translation.y() -= 1e-5 * t;
+            return d;
+        };
+        Simulation simulation(block, apparatus, {.tolerance = 1e-4});
+        FrameReport r;
+        for (int n = 0; n < moves; ++n) {
+            r = simulation.advance(at(double(n) / moves), at(double(n + 1) / moves));
+        }
+        CHECK(r.load[0].contacts > 0);
+        return r;
+    };
+    const FrameReport fine = worked(32), coarse = worked(1);
+    INFO(fine.load[1].work << " " << coarse.load[1].work << " of " << coarse.load_work);
+    CHECK(std::abs(fine.load[1].work) < 0.1 * fine.load_work);
+    CHECK(coarse.load[1].work == Approx(fine.load[1].work).epsilon(0.35));
 }
