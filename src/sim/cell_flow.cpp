@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/parallel.h"
 #include "laws/spring_damper.h"
@@ -17,7 +18,8 @@ namespace {
 constexpr std::size_t kRunsPerChunk = 256;
 constexpr std::size_t kCellsPerChunk = 1024;  // about
 constexpr std::size_t kSpansPerChunk = 1024;
-constexpr double kNearYield = 1e-4;  // of it: strains are kept as floats
+constexpr double kNoLength = 1e-150;  // of the reference length
+constexpr double kNearYield = 1e-4;   // of it: strains are kept as floats
 
 SWAGE_VECTOR_CLONES
 void strain_block(const double* x, const double* y, const double* z, const double* ux,
@@ -171,14 +173,57 @@ const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
     return rest_;
 }
 
+// What flow takes in a step, over stiffness and spacing squared. With f the force of a connection,
+// u the way of its ends against each other and W its energy, the books of a step have 1/2 (f_0 +
+// f_1) u as the work of the one, and W_1 - W_0 as what is stored of it: the rest has gone into
+// flow. With the tension at the end alone a step in which something begins to flow, or turns, took
+// too much.
+double CellFlow::taken_in(double step, const Aggregate& matter) const {
+    const Vec3Array &x = matter.particle_position, &v = matter.particle_velocity;
+    const std::vector<Span>& spans = matter.lattice.span;
+    if (flowing_.empty()) return 0;
+    const auto taken = [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t n = begin; n < end; ++n) {
+            const Span& s = spans[n];
+            const ConnectionArrays& c = matter.connection[s.direction];
+            const float *was = c.plastic.empty() ? nullptr : c.plastic.data() + s.lower,
+                        *is = rest_[s.direction].data() + s.lower;
+            const double inverse = 1 / reference_length(matter.lattice, s.direction);
+            double sum_here = 0;
+            for (int i = 0; i < s.count; ++i) {
+                const double p0 = was ? was[i] : 0, p1 = is[i];
+                if (p0 == p1) continue;
+                const Vec3 last = inverse * (x.at(s.upper + i) - x.at(s.lower + i));
+                const Vec3 way = step * inverse * (v.at(s.upper + i) - v.at(s.lower + i));
+                const Vec3 first = last - way;
+                const double d0 = std::max(first.norm(), kNoLength),
+                             d1 = std::max(last.norm(), kNoLength);
+                const double e0 = d0 - 1 - p0, e1 = d1 - 1 - p1;
+                const double work = 0.5 * (e0 / d0 * first.dot(way) + e1 / d1 * last.dot(way));
+                sum_here += c.weight[s.lower + i] * (work - 0.5 * (e1 * e1 - e0 * e0));
+            }
+            sum += (s.direction < kEdgeCount ? 1 : 2) * sum_here;
+        }
+        return sum;
+    };
+    double sum = 0;
+    for (double part : parallel_parts(spans.size(), kSpansPerChunk, taken)) sum += part;
+    return sum;
+}
+
 double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
     if (!(yield_distortion_ > 0)) return 0;
     if (!found) rest_strains(matter);
-    if (flowing_.empty()) return 0;
+    if (flowing_.empty()) {
+        taken_.reset();
+        return 0;
+    }
     for (std::vector<float>& slot : matter.cell_plastic) slot.resize(matter.cell_fill.size());
     for (ConnectionArrays& c : matter.connection) c.plastic.resize(matter.particle_count());
     matter.cell_history.hardening().resize(matter.cell_fill.size());
-    const double taken = keep_flow(matter, flowing_, strain_, rest_, growths);
+    const double held = keep_flow(matter, flowing_, strain_, rest_, growths);
+    const double taken = std::exchange(taken_, std::nullopt).value_or(held);
     flowing_.clear();
     const double spacing = matter.lattice.spacing;
     return lattice_stiffness(matter) * spacing * spacing * taken;

@@ -2,6 +2,7 @@
 // Plastic flow of the lattice: cells that yield hand their connections new rest lengths.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "sim/flowing_cells.h"
@@ -23,6 +24,10 @@ class CellFlow {
     // rest_strains() was last called at these positions. Adds to `growths`, where it is asked for.
     double commit(Aggregate& matter, bool found = false, RestGrowths* growths = nullptr);
 
+    // In motion, where rest_strains() was just called, by the velocities that led there from a step
+    // before: what the next commit() returns.
+    void book(const Aggregate& matter, double step) { taken_ = taken_in(step, matter); }
+
     // What is committed is not what it was when this last looked.
     void history_changed(const Aggregate& matter);
 
@@ -35,6 +40,7 @@ class CellFlow {
     bool is_far_from_yield(const Aggregate& matter) const;
     void find_strains(const Aggregate& matter);
     void find_sound(const Aggregate& matter);
+    double taken_in(double step, const Aggregate& matter) const;
 
     Yield law_{};
     double yield_distortion_ = 0;  // of a cell that has not yielded yet; 0: never yields
@@ -42,6 +48,7 @@ class CellFlow {
     RestStrains rest_;
     std::vector<char> sound_;            // of each cell; empty: not known
     std::vector<FlowingCells> flowing_;  // what rest_ holds beyond the committed strains
+    std::optional<double> taken_;        // between book() and commit()
 };
 
 }  // namespace swage

@@ -126,6 +126,10 @@ bool LatticeForces::saw_crushed() const {
     return false;
 }
 
+void LatticeForces::book_flow(const Aggregate& matter, double step) {
+    if (spring_flow_) spring_flow_->book(matter, step);
+}
+
 Committed LatticeForces::commit(Aggregate& matter, bool in_motion, SlabGrowths* growths) {
     Committed result;
     if (growths) growths->resize(std::max<std::size_t>(1, growths->size()));

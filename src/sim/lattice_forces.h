@@ -63,6 +63,9 @@ class LatticeForces {
     // these positions, with what flows, and what it saw is all that matters. Adds what rest
     // lengths grow by to `growths`, where that is asked for.
     Committed commit(Aggregate& matter, bool in_motion = false, SlabGrowths* growths = nullptr);
+    // In motion, where find() was just called: books what springs lose by flow in this step, while
+    // velocities are those of the way there.
+    void book_flow(const Aggregate& matter, double step);
 
     // Cells of a converged and committed state that have reached their strength act as springs from
     // now on; the most strained go first. The state has to be brought to rest again.

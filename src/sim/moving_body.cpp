@@ -226,7 +226,7 @@ bool MovingBody::remember(const Drive& now, double step, BodyOutcome& outcome) {
     int broken = 0;
     const auto book = [&](const Committed& lost) {
         outcome.plastic_work += lost.plastic;
-        flowed_ = flowed_ || lost.plastic > 0;
+        flowed_ = flowed_ || lost.plastic != 0;
         outcome.fracture_work += lost.fracture;
         outcome.broken += lost.broken;
         broken += lost.broken;
@@ -248,6 +248,7 @@ bool MovingBody::remember(const Drive& now, double step, BodyOutcome& outcome) {
 
 void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
                              BodyOutcome& outcome) {
+    if (remembers_) lattice_.book_flow(matter_, step);
     if (lattice_.saw_crushed() || inside_out_ > 0) {
         outcome.damped_work += calm_crushed(matter_, portable::exp(-kCalm * step / step_));
     }
