@@ -91,10 +91,13 @@ void judge_downs(const Node& root, const SceneSpec& scene, MistakeList& mistakes
         const Vec3 there = *down_of(*first);
         if (down->dot(there) > kAlike) continue;
         Place place = stage.place;
-        for (const char* key : {"up", "gravity"}) {
-            const bool is_there = stages != nullptr && s < stages->value.item.size();
-            const Entry* given = is_there ? stages->value.item[s].find(key) : nullptr;
-            if (given != nullptr) place = given->value.place;
+        if (stages != nullptr && s < stages->value.item.size()) {
+            const Entry* up = stages->value.item[s].find("up");
+            const Entry* gravity = stages->value.item[s].find("gravity");
+            // One number goes by what is up.
+            const bool has_way = gravity != nullptr && gravity->value.kind == Node::Kind::array;
+            const Entry* says = up != nullptr && !has_way ? up : gravity;
+            if (says != nullptr) place = says->value.place;
         }
         mistakes.warn(place,
                       fmt::format("down is {} in stage {}, but {} in stage {}: unless that "

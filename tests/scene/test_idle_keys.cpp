@@ -200,7 +200,7 @@ TEST_CASE("what a stage says in vain is told") {
          {"9:10: warning: remold has no effect in the first stage, whose matter has just been"}},
         {"a time of equilibria",
          of("bend\"\nduration = \"1 s\""),
-         {"9:12: warning: duration has no effect with solver = \"quasistatic\", but on the times"}},
+         {"9:12: warning: duration has no effect with solver = \"quasistatic\", except on the times"}},
         {"no angle",
          of("bend\"\nangle = 0"),
          {"9:9: warning: angle is 0, so machine bend does nothing to the work-piece"}},
@@ -239,7 +239,7 @@ TEST_CASE("stages in which down is elsewhere are told, unless nothing says what 
     check_all({
         {"two floors",
          two(floor, floor + "\nup = \"z\""),
-         {"13:6: warning: down is -z in stage 2-floor, but -y in stage 1-floor: unless that is "}},
+         {"13:6: warning: down is -z in stage 2-floor, but -y in stage 1-floor: unless that is"}},
         {"a machine that takes hold, with gravity",
          two(floor + "\nup = \"z\"", "hold\"\ngravity = 9.81"),
          {"13:11: warning: down is -y in stage 2-hold, but -z in stage 1-floor"}},
