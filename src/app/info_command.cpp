@@ -142,7 +142,7 @@ void add_info_command(CLI::App& app, Action& chosen) {
         ->add_option("mesh", given.file,
                      "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS or 3MF file, or a run directory")
         ->required()
-        ->type_name("MESH");
+        ->type_name("MESH|RUN");
     command->add_flag("--json", given.json, "print one JSON object");
 }
 

@@ -12,7 +12,7 @@
 #include "machines/parameters.h"
 #include "machines/repeat.h"
 #include "machines/start_notes.h"
-#include "machines/told.h"
+#include "machines/told_at.h"
 #include "machines/touch.h"
 #include "matter/touch_points.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/machine.h"
 
-#include "machines/told.h"
+#include "machines/told_at.h"
 
 namespace swage {
 

@@ -119,7 +119,7 @@ TEST_CASE("a scene is read from standard input, its paths from the working direc
 TEST_CASE("what is missing is called as the usage calls it, and what is mistyped as what it is") {
     const std::pair<const char*, const char*> missing[] = {{"run", "SCENE"},
                                                            {"check", "SCENE"},
-                                                           {"info", "MESH"},
+                                                           {"info", "MESH|RUN"},
                                                            {"render", "RUN"},
                                                            {"export", "RUN"}};
     for (const auto& [command, argument] : missing) {
