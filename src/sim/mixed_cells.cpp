@@ -10,6 +10,7 @@
 #include "laws/cell_growth.h"
 #include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
+#include "sim/lane_memory.h"
 #include "sim/mixed_batch.h"
 #include "sim/vector_clones.h"
 
@@ -21,16 +22,22 @@ constexpr std::size_t kBatchesPerChunk = 8, kCellsPerChunk = 64;
 constexpr double kNearYield = 1e-6;  // of the yield stress: lanes round otherwise
 
 // The search for a jump begins where the last forces found it, and anew where they did not.
-template <typename V>
-SWAGE_INLINE void set_guess(JumpGuess<V>& guess, int lane, const MixedCells::Seen& seen) {
-    guess.known[lane] = seen.jump_found ? 1 : 0;
-    const auto set = [&](Triple<V>& v, const double* from) {
-        v.x[lane] = from[0], v.y[lane] = from[1], v.z[lane] = from[2];
+template <int kWidth>
+SWAGE_INLINE JumpGuess<LanesOf<kWidth>> guess_of(const MixedBatch& batch, int begin,
+                                                 const MixedCells::Seen* seen) {
+    typedef LanesOf<kWidth> V;
+    double known[kWidth], jump[3][kWidth], inverse[9][kWidth];
+    for (int l = 0; l < kWidth; ++l) {
+        const MixedCells::Seen& own = seen[MixedLanes<kWidth>::cell_of(batch, begin, l)];
+        known[l] = own.jump_found ? 1 : 0;
+        for (int n = 0; n < 3; ++n) jump[n][l] = own.jump[n];
+        for (int n = 0; n < 9; ++n) inverse[n][l] = own.inverse[n];
+    }
+    const auto triple = [](const auto* from) __attribute__((always_inline)) {
+        return Triple<V>{load<V>(from[0]), load<V>(from[1]), load<V>(from[2])};
     };
-    set(guess.jump, seen.jump.data());
-    set(guess.inverse.x, seen.inverse.data());
-    set(guess.inverse.y, seen.inverse.data() + 3);
-    set(guess.inverse.z, seen.inverse.data() + 6);
+    return {
+        load<V>(known), triple(jump), {triple(inverse), triple(inverse + 3), triple(inverse + 6)}};
 }
 template <typename V>
 SWAGE_INLINE void set_seen(const Laminate<V>& found, int lane, MixedCells::Seen& seen) {
@@ -50,8 +57,7 @@ SWAGE_INLINE void batch_forces(const MixedBatch& batch, std::array<double, 24>* 
     const double spacing = batch.matter.lattice.spacing;
     for (int begin = 0; begin < batch.count(); begin += kWidth) {
         const MixedLanes<kWidth> cells(batch, begin);
-        JumpGuess<V> guess{};
-        for (int l = 0; l < kWidth; ++l) set_guess(guess, l, seen[cells.cell_of(batch, begin, l)]);
+        const JumpGuess<V> guess = guess_of<kWidth>(batch, begin, seen);
         Laminate<V> found;
         laminate(cells.sums, cells.phase, cells.normal, spacing, found, guess);
         V force[3][8];

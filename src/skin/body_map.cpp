@@ -67,8 +67,9 @@ MappedCell BodyMap::mapped(CellId cell) const {
 }
 
 BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<MappedCell>& cells,
-                            const BodyPlace& near) const {
+                            const BodyPlace& near, const PieceMap& pieces) const {
     constexpr std::size_t kTried = 8;
+    const int piece = pieces.piece_of(near);
     const double a = matter_.lattice.spacing;
     const Vec3 way = world - this->world(near);
     // Of what is pressed to a third.
@@ -92,6 +93,7 @@ BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<MappedCell>& ce
         for (CornerMask group : groups) {
             if (group & seen) continue;
             seen |= group;
+            if (!pieces.follows(cell, group, piece)) continue;
             const std::optional<BodyPlace> place = solve(cell, group, world);
             if (!place) continue;
             // How far the place lies outside the cell, and outside the share of its corners, and

@@ -7,6 +7,7 @@
 
 #include "matter/aggregate.h"
 #include "skin/carrier.h"
+#include "skin/piece_map.h"
 
 namespace swage {
 
@@ -24,9 +25,9 @@ class BodyMap {
     Vec3 world(const BodyPlace& place) const;
     // The place that is now at `world`; searched in the cells, of those given, whose centres are
     // nearest, of those around `near` in the body first: what has gone into itself has more than
-    // one. A place outside of all is the best guess.
+    // one. A place outside of all is the best guess. It follows the piece that `near` does.
     BodyPlace place_at(const Vec3& world, const std::vector<MappedCell>& cells,
-                       const BodyPlace& near) const;
+                       const BodyPlace& near, const PieceMap& pieces) const;
     MappedCell mapped(CellId cell) const;
 
   private:

@@ -240,7 +240,7 @@ class PlaneCut {
                 for (int other : beside[raw]) {
                     if (other < first || places[other - first].cell >= 0) continue;
                     places[other - first] =
-                        map_.place_at(split.cap_point[other - first], cells, near);
+                        map_.place_at(split.cap_point[other - first], cells, near, pieces_);
                     known.push_back(other);
                 }
             }
@@ -249,7 +249,8 @@ class PlaneCut {
         for (std::size_t n = 0; n < places.size(); ++n) {  // whom the rim does not reach
             if (places[n].cell >= 0) continue;
             const Vec3& point = split.cap_point[n];
-            places[n] = map_.place_at(point, cells, {point, carrying_cell(matter_, point)});
+            places[n] =
+                map_.place_at(point, cells, {point, carrying_cell(matter_, point)}, pieces_);
             known.push_back(first + static_cast<int>(n));
             spread();
         }

@@ -2,6 +2,7 @@
 #include "skin/piece_map.h"
 
 #include <Eigen/QR>
+#include <bit>
 
 namespace swage {
 
@@ -21,14 +22,22 @@ Vec3 hold_between(const Vec3& reference, std::span<const BodyPlace> others) {
 BodyPlace PieceMap::beside(const Vec3& reference, std::span<const BodyPlace> others) const {
     BodyPlace place{reference, carrying_cell(matter_, reference), kAllCorners,
                     hold_between(reference, others)};
-    if (is_whole(matter_, matter_.lattice.cell_corners(place.cell))) return place;
-    for (const BodyPlace& other : others) {
-        if (other.cell == place.cell) {
+    if (!is_whole(matter_, matter_.lattice.cell_corners(place.cell))) {
+        for (const BodyPlace& other : others) {
+            if (other.cell != place.cell) continue;
             place.side = other.side;
             return place;
         }
     }
-    place.side = side_of_piece(place.cell, reference, piece_of(others.front()));
+    const int piece = piece_of(others.front());
+    const auto side_in = [&](CellId cell, const Vec3i&) {
+        return side_of_piece(cell, reference, piece);
+    };
+    CellSide best{place.cell, side_in(place.cell, {})};
+    if (best.side == 0) best = nearest_side(matter_, place.cell, reference, side_in);
+    if (best.cell < 0) return place;
+    place.cell = best.cell;
+    place.side = best.side;
     return place;
 }
 
@@ -38,15 +47,21 @@ int PieceMap::piece_of(const BodyPlace& place) const {
     return pieces_.particle_piece[corner[heaviest]];
 }
 
+bool PieceMap::follows(CellId cell, CornerMask group, int piece) const {
+    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
+    return pieces_.particle_piece[corner[std::countr_zero(group)]] == piece;
+}
+
 CornerMask PieceMap::side_of_piece(CellId cell, const Vec3& reference, int piece) const {
     const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
-    const CornerGroups groups = corner_groups(matter_, corner);
-    if (groups[0] == kAllCorners) return kAllCorners;
     CornerMask own = 0;
     for (int c = 0; c < 8; ++c) own |= (pieces_.particle_piece[corner[c]] == piece) << c;
+    if (own == 0) return 0;
+    const CornerGroups groups = corner_groups(matter_, corner);
+    if (groups[0] == kAllCorners) return kAllCorners;
     const Vec3 local = carrier_in(cell_box(matter_, cell), reference).local;
     const int heaviest = heaviest_corner(trilinear_weights(local), own);
-    return heaviest < 0 ? kAllCorners : groups[heaviest];
+    return heaviest < 0 ? 0 : groups[heaviest];
 }
 
 }  // namespace swage

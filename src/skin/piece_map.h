@@ -19,10 +19,13 @@ class PieceMap {
 
     const Pieces& pieces() const { return pieces_; }
     int piece_of(const BodyPlace& place) const;  // of the particle that weighs most
+    // Whether corners of a cell that hang together belong to the piece.
+    bool follows(CellId cell, CornerMask group, int piece) const;
     // Corners of the cell that belong to one piece and hang together with the one next to the
-    // place.
+    // place; 0: it has none.
     CornerMask side_of_piece(CellId cell, const Vec3& reference, int piece) const;
-    // A place between others of one side of every cut: in a severed cell it follows what they do.
+    // A place between others of one side of every cut: it follows what they do, if need be with a
+    // cell beside its own.
     BodyPlace beside(const Vec3& reference, std::span<const BodyPlace> others) const;
 
   private:

@@ -62,7 +62,7 @@ TEST_CASE("mistakes about repeated parts in machine files are found at their let
     CHECK(mistakes_of(kRolls + kAt)
               .find("15:8: at: unknown name \"number\": only a part with repeat has one") !=
           std::string::npos);
-    for (const std::string& count : {"radius", "length/spacing"}) {
+    for (const std::string count : {"radius", "length/spacing"}) {
         CHECK(mistakes_of(kRolls + "repeat = \"" + count + "\"\n" + kAt)
                   .find("repeat can use only parameters whose default does not depend on the "
                         "work-piece") != std::string::npos);
