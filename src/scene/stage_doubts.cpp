@@ -32,7 +32,6 @@ void judge_nothing_asked(const Node& node, const StageSpec& stage, MistakeList& 
     };
     constexpr std::pair<const char*, const char*> kEssential[] = {{"bend", "angle"},
                                                                   {"twist", "angle"},
-                                                                  {"wring", "angle"},
                                                                   {"press", "depth"},
                                                                   {"stretch", "strain"}};
     for (const auto& [machine, name] : kEssential) {

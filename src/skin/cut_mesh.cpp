@@ -77,16 +77,23 @@ SweepPlanes planes_of(const std::vector<Triangle>& sweep, const Box& box, double
     return found;
 }
 
-// One cut along one plane.
+// A plane, and the side of it that each vertex must follow; 0: as it likes.
+struct SidedPlane {
+    SweepPlane plane;
+    std::vector<int> own = {};
+};
+
+// One cut along one plane. `earlier`: of the same blades, which have severed nothing yet either.
 class PlaneCut {
   public:
     PlaneCut(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
-             const Aggregate& matter, const SweepPlane& plane)
+             const Aggregate& matter, const SweepPlane& plane, std::vector<SidedPlane>& earlier)
         : mesh_(mesh),
           position_(position),
           mount_(mount),
           matter_(matter),
           plane_(plane),
+          earlier_(earlier),
           map_(matter),
           pieces_(matter) {}
 
@@ -123,8 +130,11 @@ class PlaneCut {
             mount_.add(place);
         }
         leave_chips(split, world, own);
-        for (std::size_t v = 0; v < own.size(); ++v) {
-            if (own[v] != 0) take_side(static_cast<int>(v), own[v], world[v]);
+        for (SidedPlane& other : earlier_) add_sides(split, world, other);
+        earlier_.push_back({plane_, std::move(own)});
+        for (const SidedPlane& one : earlier_) {
+            for (std::size_t v = 0; v < world.size(); ++v)
+                take_side(static_cast<int>(v), one, world[v]);
         }
         keep_smooth_normals(mesh_);
         mesh_ = apply_split(mesh_, split, reference, share);
@@ -158,6 +168,23 @@ class PlaneCut {
         const double least = std::min(matter_.lattice.cell_volume(), kChipShare * std::abs(all));
         for (std::size_t v = 0; v < own.size(); ++v) {
             if (is_cut[part[v]] && std::abs(volume[part[v]]) < least) own[v] = -own[v];
+        }
+    }
+
+    // Of what this cut adds, the sides of a plane before it.
+    void add_sides(const SurfaceSplit& split, const std::vector<Vec3>& world,
+                   SidedPlane& other) const {
+        const auto old = static_cast<int>(other.own.size());
+        for (std::size_t n = 0; n < split.added.size(); ++n) {
+            const int raw = split.added[n].raw, at = raw - old;
+            if (at < 0) {
+                other.own.push_back(other.own[raw]);
+            } else if (at < static_cast<int>(split.cut.size())) {
+                const int low = other.own[split.cut[at].low], high = other.own[split.cut[at].high];
+                other.own.push_back(low == high ? low : 0);
+            } else {
+                other.own.push_back(other.plane.height(world[old + n]) >= 0 ? 1 : -1);
+            }
         }
     }
 
@@ -256,34 +283,42 @@ class PlaneCut {
         }
     }
 
-    int side_of(ParticleId p) const {
-        return plane_.height(matter_.particle_position.at(p)) >= 0 ? 1 : -1;
-    }
-    CornerMask corners_on_side(CellId cell, int own) const {
+    CornerMask corners_on_side(CellId cell, const SweepPlane& plane, int own) const {
         const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
         CornerMask mask = 0;
-        for (int c = 0; c < 8; ++c) mask |= static_cast<CornerMask>(side_of(corner[c]) == own) << c;
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 at = matter_.particle_position.at(corner[c]);
+            mask |= static_cast<CornerMask>((plane.height(at) >= 0 ? 1 : -1) == own) << c;
+        }
         return mask;
     }
 
-    void take_side(int v, int own, const Vec3& world) {
+    void take_side(int v, const SidedPlane& one, const Vec3& world) {
         const double a = matter_.lattice.spacing;
-        if (std::abs(plane_.height(world)) > 4 * a) return;
-        const CornerMask mask = corners_on_side(mount_.cell[v], own);
-        if (mask == kAllCorners || !plane_.near(plane_.flat(world), 2 * a)) return;
+        const int own = one.own[v];
+        if (own == 0 || std::abs(one.plane.height(world)) > 4 * a) return;
+        const CornerMask mask = corners_on_side(mount_.cell[v], one.plane, own);
+        if (mask == kAllCorners || !one.plane.near(one.plane.flat(world), 2 * a)) return;
         if (mount_.side[v] & mask) {
             mount_.side[v] &= mask;
         } else {
-            change_cell(v, own);
+            change_cell(v, world);
         }
     }
 
-    // None of the cell's corners is on the vertex's side: the nearest cell that has one takes it.
-    void change_cell(int v, int own) {
+    // None of the cell's corners is on the vertex's side of a plane: the nearest cell takes it that
+    // has one on its side of all.
+    void change_cell(int v, const Vec3& world) {
+        const double a = matter_.lattice.spacing;
         const Vec3& reference = mount_.reference[v];
         const int piece = pieces_.piece_of(mount_.place(v));
         const auto side_in = [&](CellId cell, const Vec3i&) -> CornerMask {
-            return corners_on_side(cell, own) & pieces_.side_of_piece(cell, reference, piece);
+            CornerMask side = pieces_.side_of_piece(cell, reference, piece);
+            for (const SidedPlane& one : earlier_) {
+                const bool parts = one.own[v] != 0 && one.plane.near(one.plane.flat(world), 2 * a);
+                if (parts) side &= corners_on_side(cell, one.plane, one.own[v]);
+            }
+            return side;
         };
         const CellSide best = nearest_side(matter_, mount_.cell[v], reference, side_in);
         if (best.cell < 0) return;  // a sliver without a particle of its own stays where it is
@@ -296,6 +331,7 @@ class PlaneCut {
     Mount& mount_;
     const Aggregate& matter_;
     const SweepPlane& plane_;
+    std::vector<SidedPlane>& earlier_;  // in the end with this one
     const BodyMap map_;
     const PieceMap pieces_;
 };
@@ -309,11 +345,12 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
     std::vector<Vec3> now = position;
     SweepPlanes swept = planes_of(sweep, box_of(position).widened(a), 1e-3 * a);
     result.has_curved = swept.has_curved;
+    std::vector<SidedPlane> cut;
     for (SweepPlane& plane : swept.plane) {
         // As the blade does, which never runs exactly through a particle.
         plane.point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
         if (result.planes > 0) skin_positions(mount, matter, now);
-        const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, plane).run();
+        const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, plane, cut).run();
         result.planes += split.seam_edges > 0;
         result.open_parts += split.open_parts;
         for (const SplitTriangle& triangle : split.triangle) {

@@ -95,42 +95,52 @@ TEST_CASE("two blades cut four closed parts out of a bar") {
     CHECK(sum == Approx(whole).epsilon(1e-9));
 }
 
-TEST_CASE("a second stage cuts what the first one left") {
+TEST_CASE("what two blades cut follows its own piece, one after another or at once") {
     const Vec3 n1 = Vec3::UnitX(), slanted = Vec3(0.1, 1, .1).normalized();
     // Beside layers of particles, and along them.
     for (const double x : {.0137, 0.0, 0.1}) {
         for (const auto& [y, n2] : {std::pair(.0071, slanted), std::pair(0.0, Vec3(Vec3::UnitY())),
                                     std::pair(-0.05, Vec3(Vec3::UnitY()))}) {
-            INFO(x << ", " << y << " across " << n2.transpose());
-            Fixture f(bar());
-            const Vec3 p1(x, 0, 0), p2(0, y, 0);
-            f.cut(sweep_of(p1, n1, 3));
-            test::sever_plane(f.matter, p1, n1);
-            f.cut(sweep_of(p2, n2, 3));
-            test::sever_plane(f.matter, p2, n2);
-            REQUIRE(find_pieces(f.matter).count == 4);
-            check_sound(f.mesh, f.position);
-            const Components parts = surface_components(f.mesh);
-            REQUIRE(parts.count == 4);
-            const std::vector<Vec3> before = f.position;
-            const Vec3 beside = 1e-6 * f.matter.lattice.spacing * Vec3(1.3, 1.7, 0.9);
-            const auto shift = [&](const Vec3& p) -> Vec3 {
-                return Vec3(n1.dot(p - p1 - beside) >= 0 ? 1 : 0,
-                            n2.dot(p - p2 - beside) >= 0 ? 1 : 0, 0);
-            };
-            test::deform(f.matter, [&](const Vec3& p) -> Vec3 { return p + shift(p); });
-            f.follow();
-            // No vertex goes with another piece than the rest of its part.
-            for (int part = 0; part < parts.count; ++part) {
-                Vec3 low = Vec3::Constant(1e9), high = -low;
-                for (std::size_t t = 0; t < f.mesh.triangle.size(); ++t) {
-                    if (parts.triangle_component[t] != part) continue;
-                    for (int v : f.mesh.triangle[t]) {
-                        low = low.cwiseMin(f.position[v] - before[v]);
-                        high = high.cwiseMax(f.position[v] - before[v]);
-                    }
+            for (const bool at_once : {false, true}) {
+                INFO(x << ", " << y << " across " << n2.transpose()
+                       << (at_once ? ", at once" : ""));
+                Fixture f(bar());
+                const Vec3 p1(x, 0, 0), p2(0, y, 0);
+                if (at_once) {
+                    Sweep both = sweep_of(p1, n1, 3);
+                    for (const auto& t : sweep_of(p2, n2, 3.3)) both.push_back(t);
+                    f.cut(both);
+                    test::sever_plane(f.matter, p1, n1);
+                } else {
+                    f.cut(sweep_of(p1, n1, 3));
+                    test::sever_plane(f.matter, p1, n1);
+                    f.cut(sweep_of(p2, n2, 3));
                 }
-                CHECK((high - low).norm() < 1e-12);
+                test::sever_plane(f.matter, p2, n2);
+                REQUIRE(find_pieces(f.matter).count == 4);
+                check_sound(f.mesh, f.position);
+                const Components parts = surface_components(f.mesh);
+                REQUIRE(parts.count == 4);
+                const std::vector<Vec3> before = f.position;
+                const Vec3 beside = 1e-6 * f.matter.lattice.spacing * Vec3(1.3, 1.7, 0.9);
+                const auto shift = [&](const Vec3& p) -> Vec3 {
+                    return Vec3(n1.dot(p - p1 - beside) >= 0 ? 1 : 0,
+                                n2.dot(p - p2 - beside) >= 0 ? 1 : 0, 0);
+                };
+                test::deform(f.matter, [&](const Vec3& p) -> Vec3 { return p + shift(p); });
+                f.follow();
+                // No vertex goes with another piece than the rest of its part.
+                for (int part = 0; part < parts.count; ++part) {
+                    Vec3 low = Vec3::Constant(1e9), high = -low;
+                    for (std::size_t t = 0; t < f.mesh.triangle.size(); ++t) {
+                        if (parts.triangle_component[t] != part) continue;
+                        for (int v : f.mesh.triangle[t]) {
+                            low = low.cwiseMin(f.position[v] - before[v]);
+                            high = high.cwiseMax(f.position[v] - before[v]);
+                        }
+                    }
+                    CHECK((high - low).norm() < 1e-12);
+                }
             }
         }
     }
