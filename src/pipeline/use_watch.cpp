@@ -28,8 +28,10 @@ std::string peak_text(const Json& peak) {
                        at(2));
 }
 
-// Less than what it stands for is not told as that.
+// Less than what it stands for is not told as that, and what is next to nothing not to its digits.
 std::string percent(double share) {
+    constexpr double kNextToNothing = 1e-4;
+    if (share > 0 && share < kNextToNothing) return "less than 0.01 %";
     const double shown = share < 1 ? std::min(share, 0.9994) : share;
     return fmt::format("{:.3g} %", 100 * shown);
 }

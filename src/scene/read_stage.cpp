@@ -144,7 +144,7 @@ const StageReader::Loaded* StageReader::find_machine(TableReader& table, std::st
     return nullptr;
 }
 
-void StageReader::read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage) {
+bool StageReader::read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage) {
     for (const ParameterSpec& parameter : loaded.machine->parameter) {
         double value = std::numeric_limits<double>::quiet_NaN();
         table.quantity(parameter.name, parameter.quantity, {}, value);
@@ -152,18 +152,21 @@ void StageReader::read_parameters(TableReader& table, const Loaded& loaded, Stag
         stage.parameter[parameter.name] = value;
         stage.parameter_place[parameter.name] = table.find(parameter.name)->place;
     }
-    if (stage.parameter.empty()) return;
+    bool are_in_range = true;
+    if (stage.parameter.empty()) return are_in_range;
     const std::vector<Range> ranges = loaded.ranges->ranges(stage.parameter);
     for (std::size_t n = 0; n < ranges.size(); ++n) {
         const ParameterSpec& parameter = loaded.machine->parameter[n];
         const auto given = stage.parameter.find(parameter.name);
         if (given == stage.parameter.end()) continue;
         if (ranges[n].nearly_holds(given->second)) continue;
+        are_in_range = false;
         table.mistake(parameter.name,
                       fmt::format("{} = {} is out of range: machine {} takes {}", parameter.name,
                                   quantity_text(given->second, parameter.quantity),
                                   loaded.machine->name, ranges[n].text(parameter.quantity)));
     }
+    return are_in_range;
 }
 
 // What comes after them sees the machine's parts.
@@ -273,8 +276,7 @@ StageSpec StageReader::read(const Node& node) {
     if (has_machine) {
         stage.machine = *loaded->machine;
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
-        read_parameters(table, *loaded, stage);
-        repeat_parts(table, *loaded, stage);
+        if (read_parameters(table, *loaded, stage)) repeat_parts(table, *loaded, stage);
         read_loads(table, stage);
         read_limits(table, stage.sim.solver, stage.machine);
     } else if (reading_.describes) {

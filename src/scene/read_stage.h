@@ -34,7 +34,8 @@ class StageReader {
 
     const Loaded* find_machine(TableReader& table, std::string& name);
     const Loaded* load(const std::filesystem::path& file);
-    void read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage);
+    // Whether all that are given can be.
+    bool read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage);
     void repeat_parts(TableReader& table, const Loaded& loaded, StageSpec& stage);
     void read_loads(TableReader& table, StageSpec& stage);
     void name_stage(TableReader& table, const std::string& machine, StageSpec& stage);

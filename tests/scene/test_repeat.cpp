@@ -52,6 +52,8 @@ TEST_CASE("what a scene asks of parts that are not there is told at its place") 
     CHECK(parts_with("rolls = 2.5\n").second ==
           "s.toml:9:9: machine rolls: roll is repeated 2.5 times (\"rolls\"): it must be a whole "
           "number from 0 to 100\n");
+    CHECK(parts_with("rolls = -3\n").second ==
+          "s.toml:9:9: rolls = -3 is out of range: machine rolls takes 0 to 50\n");
     CHECK(parts_with("rolls = 2\n[[stage.limit]]\npart = \"roll_3\"\nforce = \"2 N\"\n")
               .second.find("machine rolls has no tool or grip \"roll_3\"") != std::string::npos);
 }
