@@ -128,16 +128,19 @@ void add_findings(MeshReport& report) {
 }  // namespace
 
 std::vector<double> component_volumes(const TriMesh& mesh, const Components& components) {
+    return component_volumes(mesh, mesh.position, components);
+}
+
+std::vector<double> component_volumes(const TriMesh& mesh, const std::vector<Vec3>& position,
+                                      const Components& components) {
     std::vector<double> volume(components.count, 0.0);
     std::vector<int> anchor(components.count, -1);
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         const int c = components.triangle_component[t];
         if (anchor[c] < 0) anchor[c] = mesh.triangle[t][0];
-        const Vec3& o = mesh.position[anchor[c]];
+        const Vec3& o = position[anchor[c]];
         const Corners& k = mesh.triangle[t];
-        volume[c] += (mesh.position[k[0]] - o)
-                         .dot((mesh.position[k[1]] - o).cross(mesh.position[k[2]] - o)) /
-                     6;
+        volume[c] += (position[k[0]] - o).dot((position[k[1]] - o).cross(position[k[2]] - o)) / 6;
     }
     return volume;
 }

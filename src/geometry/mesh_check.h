@@ -58,5 +58,8 @@ std::string area_text(double square_metres);
 // What each component encloses, if it is closed, about its own first vertex, so that it is exact
 // wherever it lies [m3].
 std::vector<double> component_volumes(const TriMesh& mesh, const Components& components);
+// With the mesh's vertices elsewhere.
+std::vector<double> component_volumes(const TriMesh& mesh, const std::vector<Vec3>& position,
+                                      const Components& components);
 
 }  // namespace swage

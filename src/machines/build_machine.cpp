@@ -45,12 +45,8 @@ struct Setting {  // what every part of a machine is set up in
 
     // What a part's expressions see is its own.
     void turn_to(const Repetition& part) {
-        const auto see = [&](Variables& all) {
-            all.erase("number");
-            if (part.number > 0) all["number"] = part.number;
-        };
-        see(known);
-        for (Variables& beside : known_beside) see(beside);
+        known.erase("number");
+        if (part.number > 0) known["number"] = part.number;
     }
 };
 

@@ -74,10 +74,6 @@ struct Repetition {
     bool is_open() const { return !count.empty(); }
 };
 
-inline std::string numbered(const std::string& name, int number) {
-    return name + "_" + std::to_string(number);
-}
-
 enum class ToolShape { none, cylinder, box, sphere, mesh };
 
 struct ToolSpec {

@@ -43,7 +43,7 @@ std::vector<Part> single(const std::vector<Part>& parts, const std::string& mach
         const int count = count_of(part.repeat, whose, known);
         for (int number = 1; number <= count; ++number) {
             Part& one = all.emplace_back(part);
-            one.name = numbered(part.name, number);
+            one.name = fmt::format("{}_{}", part.name, number);
             one.repeat = {{}, part.name, number};
         }
     }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 
+#include "geometry/mesh_check.h"
 #include "pipeline/signals.h"
 #include "pipeline/surface_match.h"
 
@@ -23,17 +24,7 @@ struct PieceTrack::Skin {
           shells(surface_components(mesh)) {}
 
     // Of each shell.
-    std::vector<double> volume() const {
-        std::vector<double> volume(std::size_t(shells.count), 0.0);
-        for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
-            const Corners& c = mesh.triangle[t];
-            const Vec3& origin = position[mesh.triangle.front()[0]];
-            const Vec3 a = position[c[0]] - origin, b = position[c[1]] - origin;
-            volume[std::size_t(shells.triangle_component[t])] +=
-                a.dot(b.cross(position[c[2]] - origin)) / 6;
-        }
-        return volume;
-    }
+    std::vector<double> volume() const { return component_volumes(mesh, position, shells); }
 };
 
 // A skin, from when it is there.

@@ -24,27 +24,7 @@ bool is_zero(const Expression& one) {
     }
 }
 
-// What is given as none of what the machine is for; it goes through its motions all the same.
-void judge_nothing_asked(const Node& node, const StageSpec& stage, MistakeList& mistakes) {
-    const auto is_given = [&](const char* parameter) {
-        const auto at = stage.parameter.find(parameter);
-        return at != stage.parameter.end() && at->second != 0;
-    };
-    constexpr std::pair<const char*, const char*> kEssential[] = {{"bend", "angle"},
-                                                                  {"twist", "angle"},
-                                                                  {"press", "depth"},
-                                                                  {"stretch", "strain"}};
-    for (const auto& [machine, name] : kEssential) {
-        const auto at = stage.parameter.find(name);
-        // A twist may draw all the same.
-        if (stage.machine.name != machine || at == stage.parameter.end() || at->second != 0 ||
-            is_given("lift") || is_given("stretch")) {
-            continue;
-        }
-        mistakes.warn(stage.parameter_place.at(name),
-                      fmt::format("{} is 0, so machine {} does nothing to the work-piece", name,
-                                  stage.machine.name));
-    }
+void judge_loads(const Node& node, const StageSpec& stage, MistakeList& mistakes) {
     const Entry* given = node.find("load");
     const std::size_t loads = given != nullptr ? given->value.item.size() : 0;
     if (loads > stage.machine.load.size()) return;
@@ -111,7 +91,7 @@ void warn_of_doubtful_stages(const Node& root, const SceneSpec& scene, MistakeLi
     const Entry* stages = root.find("stage");
     for (std::size_t s = 0; s < scene.stage.size(); ++s) {
         if (stages == nullptr || s >= stages->value.item.size()) break;
-        judge_nothing_asked(stages->value.item[s], scene.stage[s], mistakes);
+        judge_loads(stages->value.item[s], scene.stage[s], mistakes);
     }
     judge_downs(root, scene, mistakes);
 }

@@ -108,7 +108,6 @@ class PlaneCut {
         find_cut_places(split, cut, share, cut_world);
         find_cap_places(split, cut, inner);
 
-        // The side of the plane that each vertex must follow; 0: as it likes.
         std::vector<int> own(old + split.added.size(), 0);
         for (int v = 0; v < old; ++v) own[v] = plane_.height(position_[v]) >= 0 ? 1 : -1;
         for (const SplitVertex& vertex : split.at_seam) own[vertex.raw] = vertex.side;
@@ -133,8 +132,11 @@ class PlaneCut {
         for (SidedPlane& other : earlier_) add_sides(split, world, other);
         earlier_.push_back({plane_, std::move(own)});
         for (const SidedPlane& one : earlier_) {
-            for (std::size_t v = 0; v < world.size(); ++v)
-                take_side(static_cast<int>(v), one, world[v]);
+            // What was there keeps to those before this one already.
+            const bool is_new = &one == &earlier_.back();
+            for (int v = is_new ? 0 : old; v < static_cast<int>(world.size()); ++v) {
+                take_side(v, one, world[v]);
+            }
         }
         keep_smooth_normals(mesh_);
         mesh_ = apply_split(mesh_, split, reference, share);

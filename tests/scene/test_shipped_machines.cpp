@@ -262,6 +262,21 @@ TEST_CASE("the cutter's blade stays down where it is asked to") {
     CHECK(height(1) == Approx(height(0.6)));
 }
 
+TEST_CASE("a machine that is asked for nothing of what it is for tells so") {
+    const auto told = [](const std::string& name, const Given& given) {
+        const std::vector<std::string> notes = at_bar(name, given).notes;
+        return std::count_if(notes.begin(), notes.end(), [](const std::string& note) {
+            return note.find(" is 0: ") != std::string::npos;
+        });
+    };
+    CHECK(told("bend", {{"angle", 0}}) == 1);
+    CHECK(told("twist", {{"angle", 0}}) == 1);
+    CHECK(told("twist", {{"angle", 0}, {"stretch", 0.1}}) == 0);
+    CHECK(told("press", {{"depth", 0}}) == 1);
+    CHECK(told("stretch", {{"strain", 0}}) == 1);
+    for (const char* name : {"bend", "twist", "press", "stretch"}) CHECK(told(name, {}) == 0);
+}
+
 TEST_CASE("the cutter warns of a cut that runs into a grip") {
     CHECK(at_bar("cut", {{"place", 0.36}, {"tilt", 0.5}}).notes.size() == 1);
 }
