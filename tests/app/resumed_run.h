@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/box_mesh.h"
+#include "geometry/mesh_write.h"
 #include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
@@ -26,7 +28,7 @@ inline std::string falls(int speed) {
 inline const std::string kBrittle =
     "[material]\nyoung_modulus = \"50 MPa\"\npoisson_ratio = 0.2\ndensity = \"1200 kg/m3\"\n"
     "damping_ratio = 0.02\nstrength = \"0.5 MPa\"\ntoughness = \"50 J/m2\"\n";
-inline const std::string kMold = "[mold]\nacross = 3\n";
+inline const std::string kMold = "[mold]\nacross = 2\n";
 inline const std::string kBoundary = "[skin]\nkind = \"boundary\"\n";
 inline const std::string kOutput =
     "[output]\nmeshes_per_frame = true\nfields = [\"plastic_strain\", \"stress\"]\n";
@@ -47,10 +49,9 @@ inline std::string worked(const std::string& at_the_cut = "") {
 }
 
 inline fs::path put_scene(const fs::path& folder, const std::string& text) {
-    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, folder);
-    put_text(folder / "box.obj",
-             "v 0 0 0\nv .1 0 0\nv .1 .02 0\nv 0 .02 0\nv 0 0 .02\nv .1 0 .02\nv .1 .02 .02\n"
-             "v 0 .02 .02\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    run_swage({"make", "bar", "--length", "10 cm", "--division", "30", "--out", "bar.obj"}, folder);
+    swage::write_obj(folder / "box.obj", swage::box_mesh({0, 0, 0}, {0.1, 0.02, 0.02}));
+    swage::write_obj(folder / "cube.obj", swage::box_mesh({0, 0, 0}, {0.02, 0.02, 0.02}));
     put_text(folder / "scene.toml", text);
     return folder / "scene.toml";
 }
