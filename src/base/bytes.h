@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/byte_rules.h"
@@ -23,9 +24,12 @@ using EmbeddedImage = std::shared_ptr<const std::string>;  // a picture's file, 
 class ByteWriter {
   public:
     static constexpr bool kReads = false;
+    using Sink = std::function<void(std::string_view)>;
 
     // `with_images`: the bytes of each image behind its first mention, else its hash alone.
     explicit ByteWriter(bool with_images = false) : with_images_(with_images) {}
+    // `sink` takes the bytes piece by piece, the last at flush().
+    ByteWriter(bool with_images, Sink sink) : with_images_(with_images), sink_(std::move(sink)) {}
 
     template <typename... T>
     void operator()(const T&... values) {
@@ -33,7 +37,18 @@ class ByteWriter {
         (pass(*this, const_cast<T&>(values)), ...);
     }
     void raw(const void* data, std::size_t size) {
-        if (size > 0) bytes_.append(static_cast<const char*>(data), size);
+        if (size == 0) return;
+        const std::string_view all(static_cast<const char*>(data), size);
+        if (!sink_ || bytes_.size() + size <= kPiece) {
+            bytes_.append(all);
+            return;
+        }
+        flush();
+        sink_(all);
+    }
+    void flush() {
+        if (!bytes_.empty()) sink_(bytes_);
+        bytes_.clear();
     }
     std::size_t count(std::size_t size, std::size_t) {
         (*this)(std::uint64_t(size));
@@ -46,10 +61,12 @@ class ByteWriter {
         (*this)(hash);
         if (with_images_ && image_.insert(hash).second) (*this)(*image);
     }
-    const std::string& bytes() const { return bytes_; }
+    const std::string& bytes() const { return bytes_; }  // that no sink has taken
 
   private:
+    static constexpr std::size_t kPiece = 1 << 16;
     bool with_images_;
+    Sink sink_;
     std::set<std::uint64_t> image_;  // that were mentioned
     std::string bytes_;
 };

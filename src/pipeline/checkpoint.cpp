@@ -52,9 +52,9 @@ void visit(Io& io, Reached& reached) {
 }
 
 void write_checkpoint(const fs::path& file, const StageKeys& keys, const Reached& reached) {
-    ByteWriter out(true);
-    out(head_of(keys, reached.stages), state_hash(reached.bodies), reached);
-    write_sealed(file, kMagic, out.bytes());
+    write_sealed(file, kMagic, [&](ByteWriter& out) {
+        out(head_of(keys, reached.stages), state_hash(reached.bodies), reached);
+    });
 }
 
 bool is_kept(const fs::path& file, const StageKeys& keys, int stages) {

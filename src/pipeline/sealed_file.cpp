@@ -21,13 +21,25 @@ bool has_magic(const FileHandle& handle, std::uint64_t magic) {
 
 }  // namespace
 
-void write_sealed(const fs::path& file, std::uint64_t magic, std::string_view bytes) {
-    const std::uint64_t hash = hash_of(bytes);
+std::size_t write_sealed(const fs::path& file, std::uint64_t magic,
+                         const std::function<void(ByteWriter&)>& write) {
+    const auto as_text = [](const std::uint64_t& word) {
+        return std::string_view(reinterpret_cast<const char*>(&word), sizeof word);
+    };
     WholeFile whole(file);
-    whole.put({reinterpret_cast<const char*>(&magic), sizeof magic});
-    whole.put(bytes);
-    whole.put({reinterpret_cast<const char*>(&hash), sizeof hash});
+    Hasher hasher;
+    std::size_t size = 0;
+    ByteWriter out(true, [&](std::string_view bytes) {
+        hasher.add(bytes);
+        whole.put(bytes);
+        size += bytes.size();
+    });
+    whole.put(as_text(magic));
+    write(out);
+    out.flush();
+    whole.put(as_text(hasher.value()));
     whole.finish();
+    return size;
 }
 
 std::string start_of_sealed(const fs::path& file, std::uint64_t magic, std::size_t most) {

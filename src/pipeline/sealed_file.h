@@ -5,14 +5,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
+
+#include "base/bytes.h"
 
 namespace swage {
 
-// Under its name when it is whole. Throws Error(output).
-void write_sealed(const std::filesystem::path& file, std::uint64_t magic, std::string_view bytes);
+// What `write` says, with images, piece by piece: never is all of it held at once. Under its name
+// when it is whole. Returns how many bytes that were. Throws Error(output).
+std::size_t write_sealed(const std::filesystem::path& file, std::uint64_t magic,
+                         const std::function<void(ByteWriter&)>& write);
 
 // Nothing where there is none that is whole, and then `why`, as in "is damaged"; empty: no file.
 std::optional<std::string> read_sealed(const std::filesystem::path& file, std::uint64_t magic,

@@ -205,22 +205,22 @@ class StageRun {
     }
 
     void keep_stage(const Simulation& simulation, int number) {
-        ByteWriter state;
-        visit(state);
-        simulation.save(state);
-        context_.keeper.keep(number, state.bytes(), bodies_);
+        context_.keeper.keep(number, bodies_, [&](ByteWriter& out) {
+            visit(out);
+            simulation.save(out);
+        });
     }
 
     // The machine and the simulation have been set up as the stage began.
     void come_back(Simulation& simulation, StageMark& mark) {
         try {
             bodies_ = mark.bodies;
-            ByteReader state(mark.state);
+            ByteReader state(std::span(mark.bytes).subspan(mark.state));
             visit(state);
             simulation.load(state);
             if (state.left() > 0) fail(ExitCode::output, "it holds more than that");
-            mark.bodies.clear();  // the room
-            mark.state.clear();
+            std::vector<WorkPiece>().swap(mark.bodies);  // the room
+            std::string().swap(mark.bytes);
         } catch (const Error& error) {
             context_.keeper.forget();
             fail(ExitCode::output, "{}: what was kept of it cannot be gone on from: {}",

@@ -2,7 +2,6 @@
 #include "pipeline/stage_keeper.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/failure.h"
 #include "base/log.h"
@@ -27,21 +26,20 @@ bool StageKeeper::is_due() const {
     return can_ && worked >= every_.value_or(std::max(kLeastKept, kTimes * cost_));
 }
 
-void StageKeeper::keep(int frame, std::string state, const std::vector<WorkPiece>& bodies) {
+void StageKeeper::keep(int frame, const std::vector<WorkPiece>& bodies,
+                       const std::function<void(ByteWriter&)>& state) {
     const auto lap = watch_.lap("keep");
     const Clock::time_point start = Clock::now();
     try {
         make_folder(directory_.stage_mark().parent_path());
         recorder_.keep(directory_.kept_motion());
-        write_stage_mark(directory_.stage_mark(), directory_.stage_keys(),
-                         {stages_,
-                          frame,
-                          recorder_.mark(),
-                          recorder_.skins(),
-                          watch_.phases(),
-                          std::move(state),
-                          {}},
-                         bodies);
+        StageMark mark;
+        mark.stages = stages_;
+        mark.frame = frame;
+        mark.motion = recorder_.mark();
+        mark.skin = recorder_.skins();
+        mark.seconds = watch_.phases();
+        write_stage_mark(directory_.stage_mark(), directory_.stage_keys(), mark, bodies, state);
         frame_ = frame;
         note_();
     } catch (const std::exception& error) {

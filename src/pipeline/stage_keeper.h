@@ -39,7 +39,8 @@ class StageKeeper {
     void begin(int stages, std::optional<int> frame, StageStart start);
     bool is_due() const;
     // Where that cannot be written it is told, and nothing more is kept of this stage.
-    void keep(int frame, std::string state, const std::vector<WorkPiece>& bodies);
+    void keep(int frame, const std::vector<WorkPiece>& bodies,
+              const std::function<void(ByteWriter&)>& state);
     // The stage is done, or what is kept of it serves nothing.
     void forget();
 

@@ -19,21 +19,22 @@ const std::string& key_of(const StageKeys& keys, int stages) {
 
 template <typename Io>
 void visit(Io& io, StageMark& mark) {
-    auto& [stages, frame, motion, skin, seconds, state, bodies] = mark;
-    io(stages, frame, motion, skin, seconds, state);
+    auto& [stages, frame, motion, skin, seconds, bodies, bytes, state] = mark;
+    io(stages, frame, motion, skin, seconds);
 }
 
 std::size_t write_stage_mark(const std::filesystem::path& file, const StageKeys& keys,
-                             const StageMark& mark, const std::vector<WorkPiece>& bodies) {
-    ByteWriter out(true);
-    out(key_of(keys, mark.stages), mark, bodies);
-    write_sealed(file, kMagic, out.bytes());
-    return out.bytes().size();
+                             const StageMark& mark, const std::vector<WorkPiece>& bodies,
+                             const std::function<void(ByteWriter&)>& state) {
+    return write_sealed(file, kMagic, [&](ByteWriter& out) {
+        out(key_of(keys, mark.stages), mark, bodies);
+        state(out);
+    });
 }
 
 std::optional<StageMark> read_stage_mark(const std::filesystem::path& file, const StageKeys& keys,
                                          int stages, std::string& why) {
-    const std::optional<std::string> bytes = read_sealed(file, kMagic, why);
+    std::optional<std::string> bytes = read_sealed(file, kMagic, why);
     if (!bytes) return std::nullopt;
     try {
         ByteReader in(*bytes);
@@ -43,7 +44,9 @@ std::optional<StageMark> read_stage_mark(const std::filesystem::path& file, cons
         }
         auto mark = in.get<StageMark>();
         in(mark.bodies);
-        if (in.left() == 0 && mark.stages == stages && mark.skin.size() == mark.bodies.size()) {
+        mark.state = bytes->size() - in.left();
+        if (mark.stages == stages && mark.skin.size() == mark.bodies.size()) {
+            mark.bytes = std::move(*bytes);
             return mark;
         }
     } catch (const Error&) {

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/bytes.h"
 #include "pipeline/checkpoint.h"
 
 namespace swage {
@@ -20,14 +22,16 @@ struct StageMark {
     MotionMark motion;
     std::vector<int> skin;                                // as of Reached
     std::vector<std::pair<std::string, double>> seconds;  // by phase
-    std::string state;                                    // of the stage's run and its simulation
     std::vector<WorkPiece> bodies;
+    std::string bytes;      // of the file, of which
+    std::size_t state = 0;  // from here on are what the stage's run and its simulation are at
 };
 
-// `bodies` stand for those of the mark, which are left out. Returns how long the file is [byte].
-// Throws Error(output).
+// `bodies` stand for those of the mark, `state` for its bytes, and both are written as they are
+// said. Returns how long the file is [byte]. Throws Error(output).
 std::size_t write_stage_mark(const std::filesystem::path& file, const StageKeys& keys,
-                             const StageMark& mark, const std::vector<WorkPiece>& bodies);
+                             const StageMark& mark, const std::vector<WorkPiece>& bodies,
+                             const std::function<void(ByteWriter&)>& state);
 
 // Of the run by these keys that has finished so many stages; else as read_checkpoint().
 std::optional<StageMark> read_stage_mark(const std::filesystem::path& file, const StageKeys& keys,

@@ -93,3 +93,26 @@ TEST_CASE("what is read into is changed only where the bytes say so, and is as l
         if (length > 0) CHECK(there[0].room[7] == 1);
     }
 }
+
+TEST_CASE("a sink takes the same bytes in pieces, and no more than a piece is held for it") {
+    const auto write = [](ByteWriter& out, const std::function<void()>& after_each) {
+        for (int n = 0; n < 30'000; ++n) {
+            out(n, std::string("of it"));
+            after_each();
+        }
+        out(std::vector<double>(1'000'000, 0.5), std::string("last"));
+        after_each();
+    };
+    ByteWriter at_once;
+    write(at_once, [] {});
+    std::string taken;
+    ByteWriter out(false, [&](std::string_view piece) { taken += piece; });
+    std::size_t most = 0;
+    write(out, [&] { most = std::max(most, out.bytes().size()); });
+    CHECK(most <= 1 << 16);
+    CHECK(taken.size() < at_once.bytes().size());
+    out.flush();
+    CHECK((taken == at_once.bytes()));
+    out.flush();
+    CHECK(taken.size() == at_once.bytes().size());
+}
