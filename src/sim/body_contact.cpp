@@ -29,7 +29,11 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
     if (bodies.size() < 2 && !settings.self_contact) return;
     side_.reserve(bodies.size());
     for (Aggregate* body : bodies) {
-        side_.emplace_back(*body, settings.self_contact);
+        const auto alike = std::find_if(side_.begin(), side_.end(), [&](const ContactSide& side) {
+            return RestSurface::is_shared(side.matter(), *body);
+        });
+        side_.emplace_back(*body, settings.self_contact,
+                           alike == side_.end() ? nullptr : alike->molded());
         least_spacing_ = std::min(least_spacing_, body->lattice.spacing);
     }
     for (std::size_t a = 0; a < bodies.size(); ++a) {

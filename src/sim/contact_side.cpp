@@ -123,12 +123,12 @@ void flood(const Lattice& lattice, const std::vector<char>& whole, const Vec3i& 
 
 }  // namespace
 
-ContactSide::ContactSide(Aggregate& matter, bool itself)
+ContactSide::ContactSide(Aggregate& matter, bool itself, std::shared_ptr<const RestSurface> molded)
     : matter_(&matter),
       patch_(matter),
       itself_(itself),
       touch_(matter),
-      molded_(std::make_shared<const RestSurface>(matter)) {
+      molded_(molded ? std::move(molded) : std::make_shared<const RestSurface>(matter)) {
     find_cells();
 }
 

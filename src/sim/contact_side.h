@@ -17,13 +17,15 @@ namespace swage {
 
 class ContactSide {
   public:
-    // `itself`: whether it may meet itself. The body must outlive it.
-    ContactSide(Aggregate& matter, bool itself);
+    // `itself`: whether it may meet itself. The body must outlive it. `molded`: as another has it
+    // that is_shared(); null: it is found.
+    ContactSide(Aggregate& matter, bool itself, std::shared_ptr<const RestSurface> molded);
 
     // A blade or a crack has changed which cells are whole. Points keep their numbers.
     void connections_changed();
 
     Aggregate& matter() const { return *matter_; }
+    const std::shared_ptr<const RestSurface>& molded() const { return molded_; }
     const SurfacePoints& points() const { return touch_.points(); }
     // The body's own; those of new surface come after them.
     std::size_t own_points() const { return touch_.own(); }

@@ -66,6 +66,25 @@ RestSurface::RestSurface(const Aggregate& matter) {
     }
 }
 
+bool RestSurface::is_shared(const Aggregate& a, const Aggregate& b) {
+    const Lattice &la = a.lattice, &lb = b.lattice;
+    const auto is_same = [](const CellRun& one, const CellRun& other) {
+        return one.i == other.i && one.j == other.j && one.k == other.k &&
+               one.first == other.first && one.count == other.count && one.row == other.row;
+    };
+    if (a.surface.size() != b.surface.size() || la.cell_run.size() != lb.cell_run.size() ||
+        la.spacing != lb.spacing || la.origin != lb.origin || la.cell_count != lb.cell_count ||
+        a.particle_count() != b.particle_count()) {
+        return false;
+    }
+    const auto step = [](const Aggregate& matter) {
+        return matter.particle_reference.in_cell(0, Vec3::Ones());
+    };
+    return a.particle_reference.at(0) == b.particle_reference.at(0) && step(a) == step(b) &&
+           std::equal(la.cell_run.begin(), la.cell_run.end(), lb.cell_run.begin(), is_same) &&
+           a.surface == b.surface;
+}
+
 void RestSurface::bin_points(const Aggregate& matter) {
     const Lattice& lattice = matter.lattice;
     const SurfacePoints& surface = matter.surface;

@@ -42,6 +42,8 @@ SurfaceDepth interpolate_depth(const std::array<float, 8>& corner, const Vec3& p
 class RestSurface {
   public:
     explicit RestSurface(const Aggregate& matter);
+    // Whether those of both are the same: of bodies that are molded alike one serves.
+    static bool is_shared(const Aggregate& a, const Aggregate& b);
 
     using Depth = SurfaceDepth;
     // `place` in the cell, each 0 to 1, or a little outside. Nothing is known of cells that lie

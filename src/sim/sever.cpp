@@ -90,6 +90,7 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
         all.grow(box);
     }
     std::vector<SeverEvent> events;
+    if (triangles.empty()) return events;
     for (const Span& span : matter.lattice.span) {
         const SparseArray<float>& weight = matter.connection[span.direction].weight;
         for (int n = 0; n < span.count; ++n) {
@@ -98,7 +99,7 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
             const Vec3 from = matter.particle_position.at(lower);
             const Vec3 to = matter.particle_position.at(span.upper + n);
             const Box own = {from.cwiseMin(to), from.cwiseMax(to)};
-            if (triangles.empty() || !own.overlaps(all)) continue;
+            if (!own.overlaps(all)) continue;
             for (std::size_t t = 0; t < triangles.size(); ++t) {
                 if (!own.overlaps(boxes[t]) || !crosses(from, to, triangles[t])) continue;
                 events.push_back({span.direction, lower, span.upper + n, weight[lower]});

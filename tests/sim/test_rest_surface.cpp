@@ -205,3 +205,22 @@ TEST_CASE("nothing is deeper than a sliver where the cells of parts thinner than
         CHECK(creases < 0.1 * slopes);
     }
 }
+
+TEST_CASE("bodies that are molded alike share one, wherever they are, and no others do") {
+    const Aggregate block = make_block(3, 4, 5, 0.1, Material{});
+    const auto shared = [&](const auto& change) {
+        Aggregate other = block;
+        change(other);
+        return RestSurface::is_shared(block, other) && RestSurface::is_shared(other, block);
+    };
+    CHECK(shared([](Aggregate& m) {
+        for (double& y : m.particle_position.y) y += 0.7;
+        m.material.young_modulus *= 2;
+    }));
+    CHECK_FALSE(shared([](Aggregate& m) { m.lattice.spacing *= 1.0001; }));
+    CHECK_FALSE(shared([](Aggregate& m) { m.lattice.origin.x() += 1e-3; }));
+    CHECK_FALSE(shared([](Aggregate& m) {
+        m.surface.move(7, m.surface.place(7) + Vec3(1e-3, 0, 0), m.surface.area(7));
+    }));
+    CHECK_FALSE(RestSurface::is_shared(block, make_block(4, 3, 5, 0.1, Material{})));
+}

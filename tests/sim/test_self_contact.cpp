@@ -122,11 +122,11 @@ TEST_CASE("pieces after a cut do not pass through each other") {
 TEST_CASE("what is connected to a point is the same, told break by break or all at once") {
     const Aggregate sound = make_block(30, 6, 12, 0.05, soft());
     Aggregate block = sound;
-    ContactSide side(block, true);
+    ContactSide side(block, true, nullptr);
     const auto check = [&](const char* what) {
         side.connections_changed();
         Aggregate same = block;
-        const ContactSide anew(same, true);
+        const ContactSide anew(same, true, nullptr);
         REQUIRE(anew.own_points() == side.own_points());
         int differ = 0, neighbours = 0;
         for (int p = 0; p < static_cast<int>(side.own_points()); ++p) {

@@ -57,7 +57,7 @@ TEST_CASE("what goes into a body from any side meets it at its surface, not deep
         settings.across = 8;
         Aggregate matter = mold(mesh, {}, settings);
         const double a = matter.lattice.spacing;
-        ContactSide side(matter, false);
+        ContactSide side(matter, false, nullptr);
         for (int n = 0; n < 1500; ++n) {
             const std::size_t p = random() % matter.surface.size();
             const Vec3 normal = matter.surface.normal(p);
