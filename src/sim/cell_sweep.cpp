@@ -7,6 +7,7 @@
 #include "laws/cell_forces.h"
 #include "laws/strain_bound.h"
 #include "laws/volume_guard.h"
+#include "matter/open_faces.h"
 #include "sim/cell_history.h"
 #include "sim/flowed_stretch.h"
 #include "sim/vector_clones.h"
@@ -193,8 +194,10 @@ CellSweep::CellSweep(const Aggregate& matter)
 void CellSweep::cells_changed(const Aggregate& matter, std::vector<TurnedCell>* turned) {
     const std::vector<float> carried = turned ? fill_ : std::vector<float>();
     fill_ = matter.cell_fill;
+    const std::vector<char> whole = whole_cells(matter);
     for_each_cell(matter, [&](const CellRun& run, int n, CellId cell) {
-        if (cell_is_sound(matter, cell, run.row_at(n))) return;
+        const bool cracked = !matter.cell_cracked.empty() && matter.cell_cracked[cell] != 0;
+        if (whole[cell] && !cracked) return;
         fill_[cell] = 0;
         if (turned && carried[cell] > 0) {
             const bool one = matter.mixed_at(cell) == nullptr;

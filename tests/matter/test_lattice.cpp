@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <random>
 #include <set>
 
 #include "base/math.h"
 #include "matter/aggregate.h"
+#include "matter/open_faces.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 
@@ -86,6 +88,28 @@ TEST_CASE("a body without connections across a plane is two pieces") {
     CHECK(pieces.count == 2);
     CHECK(pieces.particle_piece.front() == 0);
     CHECK(pieces.particle_piece[6] == 1);
+}
+
+TEST_CASE("which cells are whole is the same asked of all at once and one by one") {
+    Aggregate m = test::make_block(21, 19, 23, 0.1, Material{});
+    std::mt19937 random(1);
+    for (const int more : {0, 1, 40, 4000}) {
+        for (int n = 0; n < more; ++n) {
+            const Span& span = m.lattice.span[random() % m.lattice.span.size()];
+            m.connection[span.direction].weight.set(
+                span.lower + random() % static_cast<unsigned>(span.count), 0);
+        }
+        const std::vector<char> whole = whole_cells(m);
+        REQUIRE(whole.size() == m.cell_fill.size());
+        std::size_t wrong = 0, broken = 0;
+        for (std::size_t c = 0; c < whole.size(); ++c) {
+            const auto cell = static_cast<CellId>(c);
+            wrong += cell_is_whole(m, m.lattice.cell_row(cell)) != (whole[c] != 0);
+            broken += whole[c] == 0;
+        }
+        CHECK(wrong == 0);
+        CHECK((broken > 0) == (more > 0));
+    }
 }
 
 TEST_CASE("the state hash sees every bit that a later step depends on") {
