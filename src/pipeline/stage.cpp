@@ -82,6 +82,7 @@ class StageRun {
           use_(bodies),
           cuts_(bodies.size(), 0),
           meshes_(context.scene, stage, context.root) {
+        const auto lap = context_.watch.lap("set up");
         tell_machine();
         warn_of_start();
     }
@@ -89,7 +90,10 @@ class StageRun {
     StageOutcome run(int last_frame) {
         std::vector<Aggregate*> matter;
         for (WorkPiece& body : bodies_) matter.push_back(&body.matter);
-        Simulation simulation(matter, machine_.apparatus, stage_.sim);
+        Simulation simulation = [&] {
+            const auto lap = context_.watch.lap("set up");
+            return Simulation(matter, machine_.apparatus, stage_.sim);
+        }();
         context_.begin();
         meshes_.make_folders();
         before_ = std::max(last_frame, 1);

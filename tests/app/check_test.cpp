@@ -72,7 +72,7 @@ TEST_CASE("the steps that a run takes lie in the range that check tells") {
     holds(floor, rubber);
     holds(floor, clay);
     holds("twist\"\nsolver = \"explicit\"\nduration = \"4 ms\"\n", copper);
-    holds("bend\"\nsolver = \"implicit\"\nangle = \"20 deg\"\n", rubber);
+    holds("bend\"\nsolver = \"implicit\"\nangle = \"5 deg\"\nduration = \"20 ms\"\n", rubber);
 }
 
 TEST_CASE("a slab that its spacing does not divide is told in the layers that it lies in") {
