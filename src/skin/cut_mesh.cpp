@@ -108,9 +108,8 @@ class PlaneCut {
         find_cut_places(split, cut, share, cut_world);
         find_cap_places(split, cut, inner);
 
-        std::vector<int> own(old + split.added.size(), 0);
-        for (int v = 0; v < old; ++v) own[v] = plane_.height(position_[v]) >= 0 ? 1 : -1;
-        for (const SplitVertex& vertex : split.at_seam) own[vertex.raw] = vertex.side;
+        std::vector<int> own = sides_of_old(split);
+        own.resize(old + split.added.size(), 0);
         std::vector<Vec3> reference;
         std::vector<Vec3> world = position_;
         for (std::size_t n = 0; n < split.added.size(); ++n) {
@@ -146,6 +145,25 @@ class PlaneCut {
     }
 
   private:
+    // One that lies on the plane, or nearly, is with its triangles.
+    std::vector<int> sides_of_old(const SurfaceSplit& split) const {
+        std::vector<char> above(position_.size(), 0), below(position_.size(), 0);
+        for (const SplitTriangle& t : split.triangle) {
+            for (const int raw : t.raw) {
+                if (raw >= static_cast<int>(position_.size())) continue;
+                if (t.side >= 0) above[raw] = 1;
+                if (t.side <= 0) below[raw] = 1;
+            }
+        }
+        std::vector<int> own;
+        for (std::size_t v = 0; v < position_.size(); ++v) {
+            own.push_back(plane_.height(position_[v]) >= 0 ? 1 : -1);
+            if (above[v] != below[v]) own[v] = above[v] ? 1 : -1;
+        }
+        for (const SplitVertex& vertex : split.at_seam) own[vertex.raw] = vertex.side;
+        return own;
+    }
+
     // What is cut off thinner than the matter knows would hang in the air beside what is not of it:
     // it stays where it was cut from.
     void leave_chips(const SurfaceSplit& split, const std::vector<Vec3>& world,
