@@ -23,7 +23,8 @@ namespace {
 
 using Triangle = std::array<Vec3, 3>;
 
-// A part that a cut leaves is a chip below one cell and this share of the mesh.
+// A part that a cut leaves is a chip below one cell and this share of the mesh, and nowhere a cell
+// away from the cut.
 constexpr double kChipShare = 0.01;
 // An edge that by the matter's map leaves its chord by more than this share of its length spans a
 // jump of the map.
@@ -83,17 +84,23 @@ struct SidedPlane {
     std::vector<int> own = {};
 };
 
-// One cut along one plane. `earlier`: of the same blades, which have severed nothing yet either.
+// What blades that have severed nothing yet have cut.
+struct CutSoFar {
+    std::vector<SidedPlane> plane;
+    std::vector<std::array<int, 2>> chip_link;  // vertices of chips, and of what they stay with
+};
+
+// One cut along one plane.
 class PlaneCut {
   public:
     PlaneCut(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
-             const Aggregate& matter, const SweepPlane& plane, std::vector<SidedPlane>& earlier)
+             const Aggregate& matter, const SweepPlane& plane, CutSoFar& so_far)
         : mesh_(mesh),
           position_(position),
           mount_(mount),
           matter_(matter),
           plane_(plane),
-          earlier_(earlier),
+          so_far_(so_far),
           map_(matter),
           pieces_(matter) {}
 
@@ -128,11 +135,11 @@ class PlaneCut {
             mount_.add(place);
         }
         leave_chips(split, world, own);
-        for (SidedPlane& other : earlier_) add_sides(split, world, other);
-        earlier_.push_back({plane_, std::move(own)});
-        for (const SidedPlane& one : earlier_) {
+        for (SidedPlane& other : so_far_.plane) add_sides(split, world, other);
+        so_far_.plane.push_back({plane_, std::move(own)});
+        for (const SidedPlane& one : so_far_.plane) {
             // What was there keeps to those before this one already.
-            const bool is_new = &one == &earlier_.back();
+            const bool is_new = &one == &so_far_.plane.back();
             for (int v = is_new ? 0 : old; v < static_cast<int>(world.size()); ++v) {
                 take_side(v, one, world[v]);
             }
@@ -167,11 +174,13 @@ class PlaneCut {
     // What is cut off thinner than the matter knows would hang in the air beside what is not of it:
     // it stays where it was cut from.
     void leave_chips(const SurfaceSplit& split, const std::vector<Vec3>& world,
-                     std::vector<int>& own) const {
+                     std::vector<int>& own) {
         DisjointSets sets(own.size());
         for (const SplitTriangle& t : split.triangle) {
             sets.unite(t.vertex[0], t.vertex[1]), sets.unite(t.vertex[0], t.vertex[2]);
         }
+        drop_split_links(split);
+        for (const auto& [chip, host] : so_far_.chip_link) sets.unite(chip, host);
         std::vector<int> part;
         std::vector<double> volume(sets.number_sets(part), 0.0);
         std::vector<char> is_cut(volume.size(), 0);
@@ -186,8 +195,42 @@ class PlaneCut {
             if (t.parent < 0) is_cut[part[a]] = 1;
         }
         const double least = std::min(matter_.lattice.cell_volume(), kChipShare * std::abs(all));
+        std::vector<double> far(volume.size(), 0.0);
         for (std::size_t v = 0; v < own.size(); ++v) {
-            if (is_cut[part[v]] && std::abs(volume[part[v]]) < least) own[v] = -own[v];
+            far[part[v]] = std::max(far[part[v]], std::abs(plane_.height(world[v])));
+        }
+        const auto is_chip = [&](int v) {
+            return is_cut[part[v]] && std::abs(volume[part[v]]) < least &&
+                   far[part[v]] < matter_.lattice.spacing;
+        };
+        link_chips(split, is_chip);
+        for (std::size_t v = 0; v < own.size(); ++v) {
+            if (is_chip(static_cast<int>(v))) own[v] = -own[v];
+        }
+    }
+
+    // A vertex that this cut has split may be on either side of it.
+    void drop_split_links(const SurfaceSplit& split) {
+        std::set<int> at_seam;
+        for (const SplitVertex& vertex : split.at_seam) at_seam.insert(vertex.raw);
+        std::erase_if(so_far_.chip_link, [&](const auto& link) {
+            return at_seam.contains(link[0]) || at_seam.contains(link[1]);
+        });
+    }
+
+    template <typename IsChip>
+    void link_chips(const SurfaceSplit& split, const IsChip& is_chip) {
+        std::map<int, std::array<int, 2>> copy;  // of what is raw, below and above
+        for (const SplitTriangle& t : split.triangle) {
+            if (t.parent >= 0) continue;
+            for (int k = 0; k < 3; ++k) {
+                const auto at = copy.emplace(t.raw[k], std::array{-1, -1}).first;
+                at->second[t.side > 0] = t.vertex[k];
+            }
+        }
+        for (const auto& [raw, both] : copy) {
+            const auto [below, above] = both;
+            if (is_chip(below) != is_chip(above)) so_far_.chip_link.push_back({below, above});
         }
     }
 
@@ -334,7 +377,7 @@ class PlaneCut {
         const int piece = pieces_.piece_of(mount_.place(v));
         const auto side_in = [&](CellId cell, const Vec3i&) -> CornerMask {
             CornerMask side = pieces_.side_of_piece(cell, reference, piece);
-            for (const SidedPlane& one : earlier_) {
+            for (const SidedPlane& one : so_far_.plane) {
                 const bool parts = one.own[v] != 0 && one.plane.near(one.plane.flat(world), 2 * a);
                 if (parts) side &= corners_on_side(cell, one.plane, one.own[v]);
             }
@@ -351,7 +394,7 @@ class PlaneCut {
     Mount& mount_;
     const Aggregate& matter_;
     const SweepPlane& plane_;
-    std::vector<SidedPlane>& earlier_;  // in the end with this one
+    CutSoFar& so_far_;  // in the end with this one
     const BodyMap map_;
     const PieceMap pieces_;
 };
@@ -365,7 +408,7 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
     std::vector<Vec3> now = position;
     SweepPlanes swept = planes_of(sweep, box_of(position).widened(a), 1e-3 * a);
     result.has_curved = swept.has_curved;
-    std::vector<SidedPlane> cut;
+    CutSoFar cut;
     for (SweepPlane& plane : swept.plane) {
         // As the blade does, which never runs exactly through a particle.
         plane.point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);

@@ -30,6 +30,32 @@ double most_torn(const TriMesh& mesh, const std::vector<Vec3>& before,
     return most;
 }
 
+// A bar, and under it a rod along it.
+TriMesh bar_with_rod(double low, double high, double thickness) {
+    TriMesh mesh = bar();
+    const int first = static_cast<int>(mesh.position.size());
+    const TriMesh rod =
+        box_mesh({.5 * (high - low), .5 * thickness, .5 * thickness}, {9, 2, 2}, false);
+    for (const Vec3& p : rod.position) {
+        mesh.position.push_back(p + Vec3(.5 * (low + high), -.16 - .5 * thickness, 0));
+    }
+    for (const Corners& t : rod.triangle) {
+        mesh.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    return mesh;
+}
+
+// Where a blade at each of `x` has parted the bar, what lies beyond it goes 1 m along.
+void part_at(Fixture& f, const std::vector<double>& x) {
+    for (const double at : x) test::sever_plane(f.matter, {at, 0, 0}, Vec3::UnitX());
+    test::deform(f.matter, [&](const Vec3& p) -> Vec3 {
+        Vec3 to = p;
+        for (const double at : x) to.x() += p.x() > at;
+        return to;
+    });
+    f.follow();
+}
+
 }  // namespace
 
 TEST_CASE("a blade that stops inside the body leaves the surface in one piece") {
@@ -148,6 +174,36 @@ TEST_CASE("what a blade only touches stays whole, on whichever side of it") {
             f.follow();
             CHECK(most_torn(f.mesh, before, f.position) < 1e-12);
         }
+    }
+}
+
+TEST_CASE("chips of several blades stay together with what the first of them is cut from") {
+    for (const bool is_left_first : {false, true}) {
+        CAPTURE(is_left_first);
+        Fixture f(bar_with_rod(-.025, .1, .04));
+        std::vector<double> x = {.02, -.02};
+        if (is_left_first) std::swap(x[0], x[1]);
+        Sweep both = sweep_of({x[0], 0, 0}, Vec3::UnitX(), 3);
+        for (const auto& t : sweep_of({x[1], 0, 0}, Vec3::UnitX(), 3.3)) both.push_back(t);
+        REQUIRE(f.cut(both).planes == 2);
+        REQUIRE(parts_of(f.mesh).size() == 6);
+        const std::vector<Vec3> before = f.position;
+        part_at(f, x);
+        CHECK(most_torn(f.mesh, before, f.position) < 1e-12);
+        for (std::size_t v = 0; v < before.size(); ++v) {
+            if (before[v].y() < -.155) CHECK(f.position[v].x() - before[v].x() == Approx(2));
+        }
+    }
+}
+
+TEST_CASE("what is cut off thin but longer than a cell goes with its own side") {
+    Fixture f(bar_with_rod(-.04, .2, .02));
+    REQUIRE(f.cut(sweep_of({.02, 0, 0}, Vec3::UnitX(), 3)).planes == 1);
+    const std::vector<Vec3> before = f.position;
+    part_at(f, {.02});
+    CHECK(most_torn(f.mesh, before, f.position) < 1e-12);
+    for (std::size_t v = 0; v < before.size(); ++v) {
+        if (before[v].x() < .019) CHECK(f.position[v].x() == before[v].x());
     }
 }
 
