@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "sim/gripped_pieces.h"
 #include "sim/motion_guard.h"
 #include "sim/own_overlap.h"
 #include "sim/static_forces.h"
@@ -180,9 +181,16 @@ std::string swollen(const StageEnd& end, const WorkPiece& body) {
                : "it has folded within single cells, and smaller ones make it less");
 }
 
-std::string how_to_close(Solver solver) {
+std::string how_to_close(Solver solver, const Books& last) {
     if (!in_motion(solver)) {
-        return "the work of tools is inaccurate between frames that are far apart: try more frames";
+        const double by_loads = std::abs(last.load_work), by_weight = std::abs(last.gravity_work);
+        const double by_tools = std::abs(last.work);
+        return fmt::format(
+            "the work of {} is inaccurate between frames that are far apart: try "
+            "more frames",
+            by_tools >= std::max(by_loads, by_weight) ? "tools"
+            : by_loads >= by_weight                   ? "loads"
+                                                      : "gravity");
     }
     if (solver == Solver::implicit_steps) {
         return "implicit steps damp by themselves: try more frames, which shorten the steps, or "
@@ -194,6 +202,56 @@ std::string how_to_close(Solver solver) {
     return "try " + shorter +
            ", more cells or, where bodies are pressed deep into each other, a larger "
            "contact_stiffness";
+}
+
+// "a", "a and b", "a, b and c"; of more, the first.
+std::string names_text(std::vector<std::string> names) {
+    constexpr std::size_t kTold = 3;
+    if (names.size() == 1) return names.front();
+    std::string last = names.back();
+    if (names.size() > kTold) last = counted(names.size() - kTold, "other", "others");
+    names.resize(std::min(kTold, names.size() - 1));
+    return joined(names, ", ") + " and " + last;
+}
+
+// Parts of the machine that in the end have done none of what they are there for, beside others
+// that have, and pieces that nothing holds.
+std::vector<std::string> idle_parts(const StageEnd& end) {
+    const Apparatus& apparatus = end.machine.apparatus;
+    std::vector<std::string> told, blunt, empty;
+    const std::size_t first = apparatus.tool.size() + apparatus.grip.size();
+    for (std::size_t n = 0; n < apparatus.blade.size() && end.totals.severed > 0; ++n) {
+        if (end.last.load[first + n].severed == 0) blunt.push_back(apparatus.blade[n].name);
+    }
+    if (!blunt.empty()) {
+        told.push_back(fmt::format(
+            "{} cut nothing: {} met no matter, or only what another blade cuts between the same "
+            "particles; smaller cells tell blades apart",
+            names_text(blunt), blunt.size() == 1 ? "it" : "they"));
+    }
+    if (apparatus.grip.empty()) return told;
+    const std::size_t held = static_cast<std::size_t>(apparatus.grip.front().body);
+    const GrippedPieces gripped = find_gripped_pieces(end.bodies[held].matter, apparatus);
+    for (std::size_t n = 0; n < apparatus.grip.size(); ++n) {
+        const bool is_empty = std::ranges::all_of(
+            gripped.at[n], [](int piece) { return piece == GrippedPieces::kNone; });
+        if (is_empty) empty.push_back(apparatus.grip[n].name);
+    }
+    if (!empty.empty()) {
+        told.push_back(
+            fmt::format("{} {} nothing: cuts or cracks run through every cell under {}, "
+                        "which smaller cells avoid",
+                        names_text(empty), empty.size() == 1 ? "holds" : "hold",
+                        empty.size() == 1 ? "it" : "them"));
+    }
+    const auto loose = std::ranges::count(gripped.by, GrippedPieces::kNone);
+    if (loose > 0 && end.totals.severed > 0 && !in_motion(end.stage.sim.solver)) {
+        told.push_back(fmt::format(
+            "{} of its {} pieces {} in no grip: where nothing else moves {}, {} where {} cut off",
+            loose, gripped.pieces.count, loose == 1 ? "is" : "are", loose == 1 ? "it" : "them",
+            loose == 1 ? "it stays" : "they stay", loose == 1 ? "it was" : "they were"));
+    }
+    return told;
 }
 
 }  // namespace
@@ -222,6 +280,9 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
                         "place, width or path it passed through only a part of the work-piece",
                         end.totals.severed));
     }
+    if (whole) {
+        for (const std::string& one : idle_parts(end)) warn(one);
+    }
     if (const std::string pressed = pressed_at_start(end); !pressed.empty()) warn(pressed);
     const double share = unaccounted(end.first, end.last, end.totals.stored, unresolved(end));
     const double taken = end.last.friction + end.last.plastic;
@@ -229,14 +290,14 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     if (in_motion(sim.solver) ? std::abs(share) > kMostGain : share < -kMostGain) {
         warn(fmt::format("the energy books do not close: {:.3g} % of the energy involved is {}; {}",
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
-                         how_to_close(sim.solver)));
+                         how_to_close(sim.solver, end.last)));
     } else if (!in_motion(sim.solver) && share < -kLittleGain &&
                taken > kLittleGain * (end.last.remainder / share) &&
                -end.last.remainder > kMostOfTaken * taken) {
         warn(
             fmt::format("friction and flow took {:.3g} J, but tools, loads and stored energy gave "
                         "{:.3g} J less; {}",
-                        taken, -end.last.remainder, how_to_close(sim.solver)));
+                        taken, -end.last.remainder, how_to_close(sim.solver, end.last)));
     }
     for (const WorkPiece& body : end.bodies) {
         if (ended == StageEnded::interrupted) break;

@@ -72,12 +72,13 @@ struct Simulation::Rooms {
     const Apparatus& apparatus;
     AnySolver solver;
     std::vector<double> work, push_work;  // of each tool and grip, load and gravity, on all bodies
+    std::vector<long> severed;            // by each blade
 
     template <typename Io>
     void visit(Io& io) {
         std::visit([&](auto& any) { io(any); }, solver);
         for (WorkedBody& one : body) io(one);
-        io(work, push_work);
+        io(work, push_work, severed);
     }
 
     const LoadSet& pushes(std::size_t b) const {
@@ -149,6 +150,7 @@ int Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
     std::vector<SeverEvent> events;
     if (at.plan.empty()) {
         events = crossed(*at.matter, std::array{from, to});
+        name_blades(events, *at.matter, apparatus, std::array{from, to});
     } else {
         events = std::move(at.plan.front());
         at.plan.pop_front();
@@ -160,6 +162,7 @@ int Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
     if (events.empty()) return 0;
     const double before = elastic(b);
     sever(*at.matter, events);
+    for (const SeverEvent& e : events) ++severed[static_cast<std::size_t>(e.blade)];
     const double let_go = connections_changed(b, from);
     at.books.severed_energy += before - elastic(b) + let_go;
     return static_cast<int>(events.size());
@@ -217,7 +220,7 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
 
 Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                        const SimSettings& settings)
-    : rooms_(new Rooms{{}, apparatus, choose_solver(bodies, apparatus, settings), {}, {}}) {
+    : rooms_(new Rooms{{}, apparatus, choose_solver(bodies, apparatus, settings), {}, {}, {}}) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         Aggregate& matter = *bodies[b];
         if (!in_motion(settings.solver)) {
@@ -231,6 +234,7 @@ Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& a
     }
     rooms_->work.assign(apparatus.tool.size() + apparatus.grip.size(), 0.0);
     rooms_->push_work.assign(rooms_->pushes(0).count(), 0.0);
+    rooms_->severed.assign(apparatus.blade.size(), 0);
 }
 
 Simulation::~Simulation() = default;
@@ -247,6 +251,7 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
     for (std::size_t n = 0; n + each < way.size(); n += each) {
         at.plan.push_back(rooms_->crossed(ahead, way.subspan(n, each + 1)));
         sever(ahead, at.plan.back());
+        name_blades(at.plan.back(), ahead, rooms_->apparatus, way);
     }
     keep_crumbs(ahead, at.plan);
 }
@@ -336,6 +341,9 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveA
             load.touched = load.touched || body.touched[n] || body.load[n].contacts > 0;
         }
         load.work = r.work[n];
+    }
+    for (std::size_t n = 0; n < r.severed.size(); ++n) {
+        report.load[r.work.size() + n].severed = r.severed[n];
     }
     const std::size_t first = report.load.size() - pushes.size();
     for (std::size_t n = 0; n < pushes.size(); ++n) {

@@ -24,8 +24,8 @@ class ByteWriter;
 struct ToolLoad {
     template <typename Io>
     void visit(Io& io) {
-        auto& [of, at, pushes, turns, done, deep, points, met] = *this;
-        io(of, at, pushes, turns, done, deep, points, met);
+        auto& [of, at, pushes, turns, done, deep, points, met, cut] = *this;
+        io(of, at, pushes, turns, done, deep, points, met, cut);
     }
 
     std::string name;
@@ -36,6 +36,7 @@ struct ToolLoad {
     double penetration = 0;      // of the deepest point [m], at the end of any leg of the frame
     int contacts = 0;
     bool touched = false;  // there were some in this frame
+    long severed = 0;      // connections, since the stage began
 };
 
 struct FrameReport : Books, StepCounts {  // of all bodies

@@ -73,24 +73,46 @@ std::vector<Triangle> swept_triangles(const Apparatus& apparatus, std::span<cons
     return all;
 }
 
+namespace {
+
+class SweptSurface {
+  public:
+    SweptSurface(const std::vector<Triangle>& swept, double spacing) {
+        const Vec3 shift = spacing * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+        for (Triangle t : swept) {
+            Box box;
+            for (Vec3& corner : t) box.grow(corner += shift);
+            // A blade that rests sweeps nothing.
+            if ((t[1] - t[0]).cross(t[2] - t[0]).norm() == 0) continue;
+            triangle_.push_back(t);
+            box_.push_back(box);
+            all_.grow(box);
+        }
+    }
+
+    bool is_empty() const { return triangle_.empty(); }
+    bool crosses(const Vec3& from, const Vec3& to) const {
+        const Box own = {from.cwiseMin(to), from.cwiseMax(to)};
+        if (!own.overlaps(all_)) return false;
+        for (std::size_t t = 0; t < triangle_.size(); ++t) {
+            if (own.overlaps(box_[t]) && swage::crosses(from, to, triangle_[t])) return true;
+        }
+        return false;
+    }
+
+  private:
+    std::vector<Triangle> triangle_;
+    std::vector<Box> box_;
+    Box all_;
+};
+
+}  // namespace
+
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<Triangle>& swept) {
-    const double a = matter.lattice.spacing;
-    const Vec3 shift = a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
-    std::vector<Triangle> triangles;
-    std::vector<Box> boxes;
-    Box all;
-    for (Triangle t : swept) {
-        Box box;
-        for (Vec3& corner : t) box.grow(corner += shift);
-        // A blade that rests sweeps nothing.
-        if ((t[1] - t[0]).cross(t[2] - t[0]).norm() == 0) continue;
-        triangles.push_back(t);
-        boxes.push_back(box);
-        all.grow(box);
-    }
+    const SweptSurface surface(swept, matter.lattice.spacing);
     std::vector<SeverEvent> events;
-    if (triangles.empty()) return events;
+    if (surface.is_empty()) return events;
     for (const Span& span : matter.lattice.span) {
         const SparseArray<float>& weight = matter.connection[span.direction].weight;
         for (int n = 0; n < span.count; ++n) {
@@ -98,16 +120,33 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
             if (weight[lower] <= 0) continue;
             const Vec3 from = matter.particle_position.at(lower);
             const Vec3 to = matter.particle_position.at(span.upper + n);
-            const Box own = {from.cwiseMin(to), from.cwiseMax(to)};
-            if (!own.overlaps(all)) continue;
-            for (std::size_t t = 0; t < triangles.size(); ++t) {
-                if (!own.overlaps(boxes[t]) || !crosses(from, to, triangles[t])) continue;
-                events.push_back({span.direction, lower, span.upper + n, weight[lower]});
-                break;
-            }
+            if (!surface.crosses(from, to)) continue;
+            events.push_back({span.direction, lower, span.upper + n, weight[lower]});
         }
     }
     return events;
+}
+
+void name_blades(std::span<SeverEvent> events, const Aggregate& matter, const Apparatus& apparatus,
+                 std::span<const Drive> way) {
+    std::vector<char> is_named(events.size(), 0);
+    for (std::size_t b = 0; b < apparatus.blade.size() && apparatus.blade.size() > 1; ++b) {
+        std::vector<Triangle> swept;
+        for (std::size_t n = 0; n + 1 < way.size(); ++n) {
+            const std::vector<Triangle> part = swept_triangles(
+                apparatus.blade[b], way[n].world_from_blade[b], way[n + 1].world_from_blade[b]);
+            swept.insert(swept.end(), part.begin(), part.end());
+        }
+        const SweptSurface surface(swept, matter.lattice.spacing);
+        for (std::size_t e = 0; e < events.size(); ++e) {
+            if (is_named[e] || !surface.crosses(matter.particle_position.at(events[e].lower),
+                                                matter.particle_position.at(events[e].upper))) {
+                continue;
+            }
+            is_named[e] = 1;
+            events[e].blade = static_cast<int>(b);
+        }
+    }
 }
 
 void sever(Aggregate& matter, std::span<const SeverEvent> events) {

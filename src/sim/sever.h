@@ -17,6 +17,7 @@ struct SeverEvent {
     ParticleId lower;  // its ends
     ParticleId upper;
     float weight;  // share of the section that it had
+    int blade = 0;
 };
 
 // The surface that the blade's edge sweeps between two poses, as triangles in the world. Neighbours
@@ -30,6 +31,11 @@ std::vector<std::array<Vec3, 3>> swept_triangles(const Apparatus& apparatus,
 // The unsevered connections that the surface crosses, in the order of the lattice.
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<std::array<Vec3, 3>>& swept);
+
+// Of several blades that cross a connection on their way the first by number is its blade,
+// whichever comes first: one beside it that finds nothing else parts nothing.
+void name_blades(std::span<SeverEvent> events, const Aggregate& matter, const Apparatus& apparatus,
+                 std::span<const Drive> way);
 
 void sever(Aggregate& matter, std::span<const SeverEvent> events);
 

@@ -44,6 +44,26 @@ TEST_CASE("a blade that meets nothing is told of, and one that cuts is not") {
     CHECK(!says(told_of(kBar, cut), "met no matter"));
 }
 
+TEST_CASE("blades that cut nothing, grips that hold nothing and pieces in no grip are told of") {
+    const auto sliced = [](const char* slices, int across) {
+        return told_of(
+            kBar,
+            std::string("[[stage]]\nmachine = \"slice\"\nframes = 2\nslices = ") + slices + "\n",
+            {}, "rubber", across);
+    };
+    // Ten layers of cells: of the 13 blades three fall where another does, and no slice has a cell.
+    const std::string thin = sliced("14", 2);
+    INFO(thin);
+    CHECK(says(thin, "blade_4, blade_8 and blade_11 cut nothing: "));
+    CHECK(says(thin, "slice_1, slice_2, slice_3 and 11 others hold nothing: "));
+    CHECK(says(thin, " are in no grip: "));
+    const std::string thick = sliced("3", 4);
+    INFO(thick);
+    for (const char* what : {"cut nothing", "hold nothing", "in no grip"}) {
+        CHECK(!says(thick, what));
+    }
+}
+
 TEST_CASE("no more energy is said to be lost than a body began with and was given") {
     const std::string told = told_of(
         kBar,
@@ -55,6 +75,16 @@ TEST_CASE("no more energy is said to be lost than a body began with and was give
     REQUIRE(share != std::string::npos);
     CHECK(std::stod(told.substr(share + 14)) > 50);
     CHECK(std::stod(told.substr(share + 14)) <= 100);
+}
+
+TEST_CASE("books that loads alone leave open are not laid at tools") {
+    const swage::TriMesh rod = box_mesh({-0.1, -0.01, -0.01}, {0.1, 0.01, 0.01});
+    const std::string told =
+        told_of(rod,
+                "[[stage]]\nmachine = \"hold\"\nframes = 1\n[[stage.load]]\non = \"top\"\n"
+                "pressure = \"32 kPa\"\n");
+    INFO(told);
+    CHECK(says(told, "the work of loads is inaccurate between frames that are far apart"));
 }
 
 TEST_CASE("pieces that have fallen into each other are told of, and those that met are not") {

@@ -48,6 +48,30 @@ const Material kPad{
 
 }  // namespace
 
+TEST_CASE("of blades that cross the same connections one severs them") {
+    const Aggregate m = make_block(10, 4, 4, 0.1, Material{});
+    Apparatus apparatus;
+    Drive from, to;
+    // Two between the same layers of particles, sloping, and one between others.
+    for (const double x : {0.03, 0.06, 0.23}) {
+        apparatus.blade.push_back({"blade", {Vec3(x, -.1, -1), Vec3(x, .1, 1)}, {}});
+        from.world_from_blade.push_back({Quat::Identity(), Vec3(0, 1, 0)});
+        to.world_from_blade.push_back({Quat::Identity(), Vec3(0, -1, 0)});
+    }
+    Drive between = from;
+    between.world_from_blade[1] = to.world_from_blade[1];
+    // Whether the second falls with the first or before it.
+    for (const auto& way : {std::vector{from, to}, std::vector{from, between, to}}) {
+        std::vector<SeverEvent> events = crossed_connections(m, swept_triangles(apparatus, way));
+        name_blades(events, m, apparatus, way);
+        std::array<std::size_t, 3> count{};
+        for (const SeverEvent& e : events) ++count[std::size_t(e.blade)];
+        CHECK(count[0] > 0);
+        CHECK(count[1] == 0);
+        CHECK(count[2] == count[0]);
+    }
+}
+
 TEST_CASE("any plane through a body leaves exactly two pieces, however it meets the lattice") {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> unit(-1, 1);
