@@ -34,6 +34,7 @@ struct Setting {  // what every part of a machine is set up in
     double duration;                        // [s]
     std::vector<Vec3> point;                // the body's surface, in the work frame
     std::vector<Vec3> touch;                // what of it meets tools
+    double apart;                           // these lie, at the most, about [m]
     Variables known;                        // grows with each tool
     std::vector<Variables> known_beside{};  // to the bodies beside it: what differs
 
@@ -116,6 +117,24 @@ Shape shape_of(const Setting& setting, const ToolSpec& tool) {
     refuse({}, fmt::format("tool {} has no shape", tool.name));
 }
 
+std::string why_no_touch(const Setting& setting, const Tool& tool, const Pose& work_from_tool,
+                         const Vec3& direction, double gap) {
+    const bool is_beside =
+        slide_to_touch(tool.shape, work_from_tool, direction, setting.touch, gap + setting.apart)
+            .has_value();
+    if (!is_beside) {
+        return fmt::format(
+            "tool {} can never touch the work-piece: it passes by. Place it nearer "
+            "to the middle",
+            tool.name);
+    }
+    return fmt::format(
+        "tool {} meets no point of the work-piece's surface. They lie about {} "
+        "apart, and it passes between them or close by: make it thicker or the "
+        "cells smaller, or place it nearer to the middle",
+        tool.name, quantity_text(setting.apart, Quantity::length));
+}
+
 void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     Tool tool{.name = spec.name,
               .shape = shape_of(setting, spec),
@@ -146,14 +165,11 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     const Vec3 touch = evaluate(spec.touch, setting.known, Quantity::number);
     if (touch.norm() > 0) {
         const Vec3 direction = touch.normalized();
+        const double gap = evaluate(spec.gap, setting.known, Quantity::length);
         const std::optional<double> shift =
-            slide_to_touch(tool.shape, work_from_tool, direction, setting.touch,
-                           evaluate(spec.gap, setting.known, Quantity::length));
-        if (!shift) {
-            refuse(spec.touch[0], fmt::format("tool {} can never touch the work-piece: it passes "
-                                              "by. Place it nearer to the middle",
-                                              spec.name));
-        }
+            slide_to_touch(tool.shape, work_from_tool, direction, setting.touch, gap);
+        if (!shift)
+            refuse(spec.touch[0], why_no_touch(setting, tool, work_from_tool, direction, gap));
         work_from_tool.translation += *shift * direction;
     }
     for (int c = 0; c < 3; ++c) {
@@ -349,33 +365,29 @@ Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame) 
 
 namespace {
 
-Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double>& given,
-               const WorkFrame& frame, const Aggregate& matter, const std::vector<Material>& beside,
-               double duration) {
-    Setting setting{frame, matter.lattice.spacing, duration, {}, {}, {}};
-    const Pose work_from_world = frame.world_from_work.inverse();
-    for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
-    const TouchPoints touch(matter);
-    for (int p = 0; p < int(touch.size()); ++p) {
-        if (!touch.meets(p)) continue;
-        setting.touch.push_back(work_from_world *
-                                touch.points().position(std::size_t(p), matter.particle_position));
+std::vector<std::string> failed_checks(const MachineSpec& spec, const Variables& known) {
+    std::vector<std::string> told;
+    for (const CheckSpec& check : spec.check) {
+        if (evaluate(check.holds, known) == 0) told.push_back(check.otherwise);
     }
-    setting.known = work_piece_variables(matter, frame);
+    return told;
+}
 
-    Machine machine;
-    machine.frame = frame;
-    for (const Material& material : beside) {
-        Variables known = setting.known;
-        known[kMaterialFriction] = material.friction;
-        known.merge(resolve_parameters(given_spec, given, known));
-        setting.known_beside.push_back(std::move(known));
+// Of a machine that cannot be set up: what its checks find may be why. Those that see what has not
+// been placed are left out.
+[[noreturn]] void refuse_with_checks(const PlacedError& why, const MachineSpec& spec,
+                                     const Variables& known) {
+    std::string told = why.what();
+    for (const CheckSpec& check : spec.check) {
+        try {
+            if (evaluate(check.holds, known) == 0) told += ". " + check.otherwise;
+        } catch (const Error&) {
+        }
     }
-    machine.parameter = resolve_parameters(given_spec, given, setting.known);
-    machine.apparatus.name = given_spec.name;
-    setting.known.insert(machine.parameter.begin(), machine.parameter.end());
+    throw PlacedError(why.place(), told, why.code());
+}
 
-    machine.spec = with_single_parts(given_spec, machine.parameter);
+void place_parts(Machine& machine, Setting& setting, const Aggregate& matter) {
     const MachineSpec& spec = machine.spec;
     for (const ToolSpec& tool : spec.tool) {
         setting.turn_to(tool.repeat);
@@ -396,13 +408,50 @@ Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double
     }
     setting.turn_to({});
     for (const LoadSpec& load : spec.load) add_load(machine, setting, matter, load);
+}
+
+Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double>& given,
+               const WorkFrame& frame, const Aggregate& matter, const std::vector<Material>& beside,
+               double duration) {
+    Setting setting{frame, matter.lattice.spacing, duration, {}, {}, 0, {}};
+    const Pose work_from_world = frame.world_from_work.inverse();
+    for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
+    const TouchPoints touch(matter);
+    for (int p = 0; p < int(touch.size()); ++p) {
+        if (!touch.meets(p)) continue;
+        setting.touch.push_back(work_from_world *
+                                touch.points().position(std::size_t(p), matter.particle_position));
+        setting.apart = std::max(setting.apart, std::sqrt(touch.points().area(std::size_t(p))));
+    }
+    setting.known = work_piece_variables(matter, frame);
+
+    Machine machine;
+    machine.frame = frame;
+    for (const Material& material : beside) {
+        Variables known = setting.known;
+        known[kMaterialFriction] = material.friction;
+        known.merge(resolve_parameters(given_spec, given, known));
+        setting.known_beside.push_back(std::move(known));
+    }
+    machine.parameter = resolve_parameters(given_spec, given, setting.known);
+    machine.apparatus.name = given_spec.name;
+    setting.known.insert(machine.parameter.begin(), machine.parameter.end());
+
+    machine.spec = with_single_parts(given_spec, machine.parameter);
+    const MachineSpec& spec = machine.spec;
+    try {
+        place_parts(machine, setting, matter);
+    } catch (const PlacedError& why) {
+        setting.turn_to({});
+        refuse_with_checks(why, spec, setting.known);
+    }
     for (const LimitSpec& limit : spec.limit) add_limit(machine, limit);
     if (!spec.gravity_strength.empty()) {
         machine.gravity_strength.emplace(spec.gravity_strength, setting.timed(), Quantity::number);
     }
     machine.notes = start_notes(machine, matter, setting.touch);
-    for (const CheckSpec& check : spec.check) {
-        if (evaluate(check.holds, setting.known) == 0) machine.notes.push_back(check.otherwise);
+    for (std::string& told : failed_checks(spec, setting.known)) {
+        machine.notes.push_back(std::move(told));
     }
     return machine;
 }

@@ -185,10 +185,33 @@ TEST_CASE("tools rub as their machine says, or else as the material") {
     CHECK(set_up(greased, body).apparatus.tool[0].friction == Approx(0.15));
 }
 
+TEST_CASE("what a machine checks is told also where it cannot be set up") {
+    MachineSpec spec = roller();
+    spec.check = {{"radius > length", "the rolls are thin"},
+                  {"radius < length", "the rolls are thick"},
+                  {"pusher_x > length", "the pusher is near"}};
+    CHECK(set_up(spec).notes ==
+          std::vector<std::string>{"the rolls are thin", "the pusher is near"});
+    spec.tool[1].at[0] = "3*length";
+    const std::string told = refusal(spec);
+    CHECK(says(told, {"never touch", "the rolls are thin"}));
+    for (const char* other : {"the rolls are thick", "the pusher is near"}) {
+        CHECK(told.find(other) == std::string::npos);
+    }
+}
+
 TEST_CASE("tools that cannot be are refused by name") {
     MachineSpec spec = roller();
     spec.tool[1].at[0] = "3*length";
     CHECK(says(refusal(spec), {"roller", "pusher", "never touch"}));
+    spec = roller();
+    spec.tool[1].radius = "0.001*length";
+    for (const char* offset : {"0.004*length", "0.096*length"}) {
+        spec.tool[1].at[0] = offset;
+        const std::string told = refusal(spec);
+        CHECK(says(told, {"roller", "pusher", "They lie about", "thicker"}));
+        CHECK(told.find("never") == std::string::npos);
+    }
     spec = roller();
     spec.tool[0].radius = "0";
     CHECK(says(refusal(spec), {"roller", "support", "radius"}));
