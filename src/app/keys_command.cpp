@@ -35,9 +35,26 @@ std::string without_numbers(const std::string& section) {
     return name;
 }
 
-// The sections of that name and what lies in them, or else the keys of that name.
+// Of a word that is none: the nearest of those that are. "render.colour" is near "render.color".
+std::string hint_for(const std::vector<SectionReference>& all, const std::string& name) {
+    const std::size_t dot = name.rfind('.');
+    std::vector<std::string> known;
+    for (const SectionReference& one : all) {
+        known.push_back(bare(one.section));
+        for (const KeyReference& key : one.key) {
+            known.push_back(dot == name.npos ? key.key : bare(one.section) + "." + key.key);
+        }
+    }
+    if (dot == name.npos) return did_you_mean(name, known);
+    const std::string section = without_numbers(name.substr(0, dot));
+    return did_you_mean((section.empty() ? "" : section + ".") + name.substr(dot + 1), known);
+}
+
+// The sections of that name and what lies in them, or else the keys of that name. `others`: where
+// to look for what is not there, by --machine or without.
 std::vector<SectionReference> chosen(const std::vector<SectionReference>& all,
-                                     const std::string& word) {
+                                     const std::string& word,
+                                     const std::vector<SectionReference>& others, bool machine) {
     const std::string name = bare(word);
     std::vector<SectionReference> found;
     for (const SectionReference& one : all) {
@@ -61,25 +78,28 @@ std::vector<SectionReference> chosen(const std::vector<SectionReference>& all,
         }
         if (!found.empty()) return found;
     }
-    std::vector<std::string> known;
     for (const SectionReference& one : all) {
         SectionReference part{one.section, {}};
-        known.push_back(bare(one.section));
         for (const KeyReference& key : one.key) {
-            known.push_back(key.key);
             if (key.key == name) part.key.push_back(key);
         }
         if (!part.key.empty()) found.push_back(part);
     }
-    if (found.empty()) {
-        const std::string hint = did_you_mean(name, known);
-        const bool is_of_stage = without_numbers(name).starts_with("stage.");
-        fail(ExitCode::command_line, "there is no section or key \"{}\"{}", word,
-             is_of_stage
-                 ? hint_and(hint, "the command swage machines NAME lists those of a machine")
-                 : hint);
+    if (!found.empty()) return found;
+    for (const SectionReference& one : others) {
+        const bool is_there =
+            bare(one.section) == name ||
+            std::ranges::any_of(one.key, [&](const KeyReference& key) { return key.key == name; });
+        if (!is_there) continue;
+        fail(ExitCode::command_line, "there is no section or key \"{}\" in {}", word,
+             machine ? "machine files; swage keys lists those of scenes"
+                     : "scenes; swage keys --machine lists those of machine files");
     }
-    return found;
+    const std::string hint = hint_for(all, name);
+    fail(ExitCode::command_line, "there is no section or key \"{}\"{}", word,
+         without_numbers(name).starts_with("stage.")
+             ? hint_and(hint, "the command swage machines NAME lists those of a machine")
+             : hint);
 }
 
 std::string section_text(const SectionReference& section) {
@@ -100,11 +120,11 @@ std::string section_text(const SectionReference& section) {
 }
 
 int keys(const KeysArguments& given) {
-    std::vector<SectionReference> all =
-        given.machine ? machine_key_reference() : scene_key_reference();
-    if (given.machine) all.push_back(expression_reference());
+    std::vector<SectionReference> all = scene_key_reference(), others = machine_key_reference();
+    others.push_back(expression_reference());
+    if (given.machine) std::swap(all, others);
     all.push_back(unit_reference());
-    if (!given.word.empty()) all = chosen(all, given.word);
+    if (!given.word.empty()) all = chosen(all, given.word, others, given.machine);
     if (given.json) {
         Json list = Json::array();
         for (const SectionReference& section : all) {

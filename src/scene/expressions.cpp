@@ -63,6 +63,18 @@ std::string word_at(const std::string& text, std::size_t at) {
     return {begin, std::find_if_not(begin, text.end(), goes_on_name)};
 }
 
+// "roll_x" of "roll_2_x"; empty where it is no such name.
+std::string without_number(const std::string& middle) {
+    const std::size_t axis = middle.rfind('_');
+    const std::size_t number =
+        axis == 0 || axis == middle.npos ? middle.npos : middle.rfind('_', axis - 1);
+    if (number == middle.npos || number + 1 == axis) return {};
+    for (std::size_t n = number + 1; n < axis; ++n) {
+        if (!is_digit(middle[n])) return {};
+    }
+    return middle.substr(0, number) + middle.substr(axis);
+}
+
 }  // namespace
 
 void ExpressionReader::read_one(TableReader& table, const std::string& key, const Node& node,
@@ -95,6 +107,9 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
         const bool is_seen = std::find(known_.begin(), known_.end(), word) != known_.end();
         if (why != unseen_.end() && !is_seen && !is_reserved_name(word)) {
             what = fmt::format("unknown name \"{}\": {}", word, why->second);
+        } else if (const auto one = unseen_.find(without_number(word));
+                   one != unseen_.end() && !is_seen) {
+            what = fmt::format("unknown name \"{}\": {}, as {}", word, one->second, one->first);
         }
         mistakes.add(place_inside(node, error.at()), key + ": " + what);
     }
@@ -209,6 +224,14 @@ void ExpressionReader::expect_positive(TableReader& table, const std::string& ke
     };
     if (given->kind != Node::Kind::array) return judge(*given);
     for (const Node& one : given->item) judge(one);
+}
+
+void ExpressionReader::expect_count(TableReader& table, const std::string& key, int most) {
+    const Node* given = table.find(key);
+    const std::optional<double> value = given != nullptr ? certain(*given) : std::nullopt;
+    if (!value || (*value >= 0 && *value <= most && *value == std::round(*value))) return;
+    table.mistake(key,
+                  fmt::format("{} = {} must be a whole number from 0 to {}", key, *value, most));
 }
 
 void ExpressionReader::expect_direction(TableReader& table) {

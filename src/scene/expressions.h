@@ -54,6 +54,8 @@ class ExpressionReader {
     // 0, or less than can be meant; or all of three are 0.
     void expect_positive(TableReader& table, const std::string& key);
     void expect_direction(TableReader& table);  // of its axis
+    // The same where it is no whole number from 0 to `most`.
+    void expect_count(TableReader& table, const std::string& key, int most);
 
     // Whether an expression uses no other names.
     bool sees_all_of(const Expression& text) const;

@@ -127,7 +127,9 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
     const Place place{source, 0, 0};
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) {
-        mistakes.add(place, "write an override as KEY=VALUE, such as stage.1.angle=45 deg");
+        mistakes.add(place,
+                     "write an override as KEY=VALUE, such as stage.1.angle=45 deg; one with "
+                     "blanks needs quotes in a shell: --set 'KEY=VALUE'");
         return;
     }
     const std::vector<std::string> parts = key_parts(text.substr(0, equals), place, mistakes);

@@ -2,6 +2,7 @@
 #include "scene/read_fields.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "base/suggest.h"
 #include "base/text.h"
@@ -9,6 +10,19 @@
 namespace swage {
 
 namespace {
+
+// "depth, motion" as the list that was meant, of those that there are; else `example` in one.
+std::string as_list(const Node& node, const std::vector<std::string>& names,
+                    const std::string& example) {
+    std::vector<std::string> meant;
+    std::istringstream parts(node.kind == Node::Kind::text ? node.text : "");
+    for (std::string part; std::getline(parts, part, ',');) {
+        std::erase(part, ' ');
+        if (std::find(names.begin(), names.end(), part) != names.end()) meant.push_back(part);
+    }
+    if (meant.empty()) meant = {example};
+    return "[\"" + joined(meant, "\", \"") + "\"]";
+}
 
 // A list of texts of these, none twice; numbers in `names`.
 std::vector<std::size_t> read_list(TableReader& table, const std::string& key,
@@ -18,8 +32,8 @@ std::vector<std::size_t> read_list(TableReader& table, const std::string& key,
     const Node* node = table.find(key);
     if (node == nullptr) return chosen;
     if (node->kind != Node::Kind::array) {
-        table.mistake(key,
-                      fmt::format("{} must be a list of texts, such as [\"{}\"]", key, example));
+        table.mistake(key, fmt::format("{} must be a list of texts, such as {}", key,
+                                       as_list(*node, names, example)));
         return chosen;
     }
     for (const Node& item : node->item) {

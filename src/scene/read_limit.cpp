@@ -29,7 +29,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void read_part(TableReader& table, const MachineSpec& machine, LimitSpec& limit) {
+// `stops`: the machine can; else that is what is wrong, whatever the part.
+void read_part(TableReader& table, const MachineSpec& machine, bool stops, LimitSpec& limit) {
     const std::vector<std::string> parts =
         parts_of(machine, [](const MotionSpec&) { return true; });
     const std::string known = parts.empty() ? "none" : joined(parts, ", ");
@@ -38,9 +39,11 @@ void read_part(TableReader& table, const MachineSpec& machine, LimitSpec& limit)
         return;
     }
     if (contains(parts, limit.part)) return;
-    table.mistake("part",
-                  fmt::format("machine {} has no tool or grip \"{}\"{}", machine.name, limit.part,
-                              hint_and(did_you_mean(limit.part, parts), "it has " + known)));
+    if (stops) {
+        table.mistake(
+            "part", fmt::format("machine {} has no tool or grip \"{}\"{}", machine.name, limit.part,
+                                hint_and(did_you_mean(limit.part, parts), "it has " + known)));
+    }
     limit.part.clear();
 }
 
@@ -74,6 +77,7 @@ void read_limits(TableReader& stage, Solver solver, MachineSpec& machine) {
         LimitSpec limit;
         limit.place = text_place(node->place);
         MistakeList& mistakes = stage.reading().mistakes;
+        const bool stops = !in_motion(solver) && machine.stops;
         if (in_motion(solver) && !describes) {
             mistakes.add(
                 node->place,
@@ -86,7 +90,7 @@ void read_limits(TableReader& stage, Solver solver, MachineSpec& machine) {
                                      "the variable {} (`swage keys --machine`), as in min(t, {})",
                                      machine.name, kStop, kStop));
         }
-        read_part(table, machine, limit);
+        read_part(table, machine, stops || describes, limit);
         read_most(table, machine, limit);
         table.finish();
         machine.limit.push_back(std::move(limit));

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "machines/repeat.h"
 #include "scene/expressions.h"
 #include "scene/file_text.h"
 #include "scene/read_color.h"
@@ -74,6 +75,7 @@ class MachineReader {
     ExpressionReader read_repeat(TableReader& table, Repetition& repeat) {
         if (!counting_.read(table, "repeat", repeat.count)) return expression_;
         expression_.take_used(counting_);
+        counting_.expect_count(table, "repeat", kMostRepeats);
         return expression_.repeated();
     }
 

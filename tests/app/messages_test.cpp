@@ -155,7 +155,38 @@ TEST_CASE("a key is told with its section before it, as --set has it") {
     CHECK(none.code == 2);
     CHECK(none.err.find("swage machines NAME lists those of a machine") != std::string::npos);
     CHECK(keys("render.colr").code == 2);
+    const auto says = [](const Outcome& outcome, const std::string& what) {
+        INFO(outcome.err);
+        return outcome.code == 2 && outcome.err.find(what) != std::string::npos;
+    };
+    CHECK(says(keys("render.colour"), ", did you mean \"render.color\"?"));
+    CHECK(says(keys("stage.1.framse"), ", did you mean \"stage.frames\"? The command swage"));
+    CHECK(says(keys("repeat"), "in scenes; swage keys --machine lists those of machine files"));
+    const auto of_machine = [](const std::string& word) {
+        return run_swage({"keys", "--machine", word});
+    };
+    CHECK(says(of_machine("repeet"), ", did you mean \"repeat\"?"));
+    CHECK(says(of_machine("tool.repeet"), ", did you mean \"tool.repeat\"?"));
+    CHECK(says(of_machine("frames"), "in machine files; swage keys lists those of scenes"));
     CHECK(keys("units").out.find("kip") != std::string::npos);
+}
+
+TEST_CASE("an override of a list, or one that a shell has split, is told how to be written") {
+    const Scratch scratch;
+    const std::string scene = put_small_scene(scratch.path(), 1).string();
+    const auto told = [&](const std::vector<std::string>& set) {
+        std::vector<std::string> words = {"check", scene, "--set"};
+        words.insert(words.end(), set.begin(), set.end());
+        return run_swage(words).err;
+    };
+    CHECK(told({"render.passes=depth, motion"})
+              .find("passes must be a list of texts, such as [\"depth\", \"motion\"]") !=
+          std::string::npos);
+    CHECK(told({"render.passes=deep"}).find("such as [\"depth\"]") != std::string::npos);
+    CHECK(told({"render.passes=depth,", "motion"})
+              .find("--set motion: write an override as KEY=VALUE, such as stage.1.angle=45 deg; "
+                    "one with blanks needs quotes in a shell: --set 'KEY=VALUE'") !=
+          std::string::npos);
 }
 
 TEST_CASE("what is not there ends with the code of what it would be") {

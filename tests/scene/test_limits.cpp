@@ -75,6 +75,14 @@ TEST_CASE("mistakes in limits are found at their place") {
     });
 }
 
+TEST_CASE("a limit on a blade, of a machine that cannot stop, is one mistake") {
+    const std::string told =
+        mistakes_in(limit("part = \"blade\"\nforce = \"2 N\"\n", "cut").text());
+    INFO(told);
+    CHECK(told.find("no motion of machine cut can stop early") != std::string::npos);
+    CHECK(std::count(told.begin(), told.end(), '\n') == 1);
+}
+
 TEST_CASE("a load that goes by stop can be halted by a limit, on a machine that cannot itself") {
     const std::string load =
         "[[stage.load]]\nforce = [0, \"-2 N\", 0]\nstrength = \"ramp(min(t, stop), 0, 1)\"\n";

@@ -69,6 +69,12 @@ TEST_CASE("mistakes about repeated parts in machine files are found at their let
                   .find("repeat can use only parameters whose default does not depend on the "
                         "work-piece") != std::string::npos);
     }
+    for (const std::string count : {"101", "-1", "2.5", "\"101\"", "\"2*51 - 1\""}) {
+        INFO(count);
+        CHECK(mistakes_of(kRolls + "repeat = " + count + "\n" + kAt)
+                  .find("must be a whole number from 0 to 100") != std::string::npos);
+    }
+    CHECK(mistakes_of(kRolls + "repeat = \"2*50\"\n" + kAt).find("must be") == std::string::npos);
     CHECK(mistakes_of(kRolls + "repeat = 3\n" + kAt + end)
               .find("\"roll_2\" is also the name of a repeated \"roll\"; choose another "
                     "name") != std::string::npos);
@@ -78,6 +84,13 @@ TEST_CASE("mistakes about repeated parts in machine files are found at their let
                     "0]\n")
             .find("unknown name \"roll_x\": only its own motion sees the middle of a tool that "
                   "is repeated") != std::string::npos);
+    for (const std::string expression : {"roll_2_x", "height + roll_13_x"}) {
+        const std::string told = mistakes_of(
+            kRolls + "repeat = 3\n" + kAt + "motion = { move = [\"" + expression + "\", 0, 0] }\n");
+        INFO(told);
+        CHECK(told.find("_x\": only its own motion sees the middle of a tool that is repeated, as "
+                        "roll_x") != std::string::npos);
+    }
     CHECK(mistakes_of("[parameter.roll_12_x]\nquantity = \"length\"\ndefault = 1\n" + kRolls +
                       "repeat = 3\n" + kAt)
               .find("\"roll_12_x\" is a parameter, and would also be the position of tool "
