@@ -29,10 +29,11 @@ struct VertexValues {
 };
 
 // Binary little-endian PLY, places in double precision: polygons, normals where the whole surface
-// is smooth (PLY has one a vertex), colours (8 bit sRGB), texture coordinates at vertices (s, t)
-// when no seam forbids it, else at face corners (texcoord, an empty list where a face has none; in
-// double precision beside polygons of more than three), names of textures and, where not all faces
-// have the one there is, texnumber (-1: none). `values`: further numbers, one a vertex, as `float`.
+// is smooth (PLY has one a vertex), colours (8 bit sRGB; where only faces meet that take none it is
+// theirs), texture coordinates at vertices (s, t) when no seam forbids it, else at face corners
+// (texcoord, an empty list where a face has none; in double precision beside polygons of more than
+// three), names of textures and, where not all faces have the one there is, texnumber (-1: none).
+// `values`: further numbers, one a vertex, as `float`.
 void write_ply(const std::filesystem::path& file, const TriMesh& mesh,
                const std::vector<VertexValues>& values = {});
 

@@ -76,6 +76,7 @@ class PlyFile {
         for (std::size_t p = 0; p < polygons_.count(); ++p)
             most_corners_ = std::max(most_corners_, polygons_.first[p + 1] - polygons_.first[p]);
         number_images(image_of_material);
+        if (!mesh.position_color.empty()) color_vertices();
     }
 
     std::string bytes() {
@@ -105,6 +106,25 @@ class PlyFile {
         const bool some_have_none =
             std::find(face_image_.begin(), face_image_.end(), -1) != face_image_.end();
         images_differ_ = image_.size() > 1 || (image_.size() == 1 && some_have_none);
+    }
+
+    // Where only faces meet that take no colours of the mesh, as inside of a cut face, it is
+    // theirs.
+    void color_vertices() {
+        color_ = mesh_.position_color;
+        if (mesh_.triangle_material.empty()) return;
+        std::vector<char> takes(color_.size(), 0);
+        const auto look = [&](std::size_t t) -> const SurfaceMaterial& {
+            return mesh_.material[mesh_.triangle_material[t]];
+        };
+        for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
+            for (const int v : mesh_.triangle[t]) takes[v] |= look(t).takes_colors;
+        }
+        for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
+            for (const int v : mesh_.triangle[t]) {
+                if (!takes[v]) color_[v] = look(t).color.cast<float>();
+            }
+        }
     }
 
     bool has_uv(std::size_t polygon) const {
@@ -146,8 +166,8 @@ class PlyFile {
         for (int k = 0; k < 3 && !normal_.empty(); ++k)
             pack(bytes_, static_cast<float>(normal_[i][k]));
         for (int k = 0; k < 2 && !uv_.empty(); ++k) pack(bytes_, static_cast<float>(uv_[i][k]));
-        for (int k = 0; k < 3 && !mesh_.position_color.empty(); ++k) {
-            const double linear = std::clamp<double>(mesh_.position_color[i][k], 0, 1);
+        for (int k = 0; k < 3 && !color_.empty(); ++k) {
+            const double linear = std::clamp<double>(color_[i][k], 0, 1);
             pack(bytes_, static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(linear))));
         }
         for (const VertexValues& one : values_) pack(bytes_, (*one.value)[i]);
@@ -190,6 +210,7 @@ class PlyFile {
     const PolygonCorners polygons_;
     const std::vector<Vec2> uv_;      // of each vertex; empty: none, or those of corners
     const std::vector<Vec3> normal_;  // likewise
+    std::vector<Eigen::Vector3f> color_;
     const bool corner_uv_;
     std::size_t most_corners_ = 0;
     std::vector<std::string> image_;

@@ -265,6 +265,23 @@ TEST_CASE("of several textures of a PLY whose faces choose none the first is tak
     CHECK(finding[0].find("2 textures are named") != std::string::npos);
 }
 
+TEST_CASE("a PLY shows the colour of faces that take none of the mesh, inside of their rim") {
+    TriMesh mesh;
+    mesh.position = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0}, {0, 0, -1}};
+    mesh.triangle = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
+    mesh.position_color.assign(5, {0.F, 1.F, 0.F});
+    mesh.material = {{.name = "coat"}, {.name = "cut", .color = {1, 0, 0}, .takes_colors = false}};
+    mesh.triangle_material = {1, 1, 1, 0, 0, 0};
+    const Folder folder;
+    write_ply(folder / "a.ply", mesh);
+    const TriMesh read = read_quietly(folder / "a.ply");
+    REQUIRE(read.position_color.size() == 5);
+    for (std::size_t v = 0; v < 5; ++v) {
+        INFO(v);
+        CHECK((read.position_color[v] - Eigen::Vector3f(v == 3, v != 3, 0)).norm() < 1e-6);
+    }
+}
+
 TEST_CASE("vertex colours survive an OBJ") {
     const Folder folder;
     TriMesh box = test::box_mesh({0, 0, 0}, {1, 2, 3});
