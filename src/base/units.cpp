@@ -22,8 +22,9 @@ struct Unit {
 };
 
 constexpr double kInch = 0.0254;
-constexpr double kPound = 0.45359237;             // [kg]
-constexpr double kPoundForce = 9.80665 * kPound;  // [N]
+constexpr double kPound = 0.45359237;                 // [kg]
+constexpr double kPoundForce = 9.80665 * kPound;      // [N]
+constexpr double kSlug = kPoundForce / (12 * kInch);  // [kg], of 1 ft/s2 by 1 lbf
 constexpr double kDegree = kPi / 180;
 
 constexpr Unit kUnits[] = {
@@ -75,6 +76,7 @@ constexpr Unit kUnits[] = {
     {"ksi", Quantity::stress, 1e3 * kPoundForce / (kInch * kInch)},
     {"lbf/in2", Quantity::stress, kPoundForce / (kInch * kInch)},
     {"lbf/ft2", Quantity::stress, kPoundForce / (144 * kInch * kInch)},
+    {"psf", Quantity::stress, kPoundForce / (144 * kInch * kInch)},
     {"kg/m3", Quantity::density, 1, true},
     {"g/cm3", Quantity::density, 1e3},
     {"kg/dm3", Quantity::density, 1e3},
@@ -82,11 +84,14 @@ constexpr Unit kUnits[] = {
     {"t/m3", Quantity::density, 1e3},
     {"lb/in3", Quantity::density, kPound / (kInch * kInch * kInch)},
     {"lb/ft3", Quantity::density, kPound / (1728 * kInch * kInch * kInch)},
+    {"slug/ft3", Quantity::density, kSlug / (1728 * kInch * kInch * kInch)},
     {"kg", Quantity::mass, 1, true},
     {"g", Quantity::mass, 1e-3, true},
     {"mg", Quantity::mass, 1e-6, true},
     {"t", Quantity::mass, 1e3},
     {"lb", Quantity::mass, kPound},
+    {"lbm", Quantity::mass, kPound},
+    {"slug", Quantity::mass, kSlug},
     {"oz", Quantity::mass, kPound / 16},
     {"MN", Quantity::force, 1e6, true},
     {"kN", Quantity::force, 1e3, true},
@@ -105,6 +110,10 @@ constexpr Unit kUnits[] = {
     {"lbf ft", Quantity::torque, 12 * kInch* kPoundForce},
     {"in lbf", Quantity::torque, kInch* kPoundForce},
     {"ft lbf", Quantity::torque, 12 * kInch* kPoundForce},
+    {"in lb", Quantity::torque, kInch* kPoundForce},
+    {"ft lb", Quantity::torque, 12 * kInch* kPoundForce},
+    {"lb in", Quantity::torque, kInch* kPoundForce},
+    {"lb ft", Quantity::torque, 12 * kInch* kPoundForce},
     {"kip in", Quantity::torque, 1e3 * kInch* kPoundForce},
     {"kip ft", Quantity::torque, 12e3 * kInch* kPoundForce},
     {"m/s2", Quantity::acceleration, 1, true},
@@ -161,7 +170,7 @@ const QuantityName& about(Quantity quantity) {
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 // Bytes of `text` that spell `unit`, where the text may write m2 as m^2 or with a raised digit, and
-// N m with a dot.
+// N m with a dot or a hyphen.
 std::size_t spelled(std::string_view text, std::string_view unit) {
     std::size_t at = 0;
     for (char letter : unit) {
@@ -174,6 +183,8 @@ std::size_t spelled(std::string_view text, std::string_view unit) {
             at += 2;
         } else if (letter == ' ' && rest.starts_with("\u22c5")) {
             at += 3;
+        } else if (letter == ' ' && rest.starts_with('-')) {
+            at += 1;
         } else if (is_digit(letter) && rest.size() > 1 && rest[0] == '^' && rest[1] == letter) {
             at += 2;
         } else if (!rest.empty() && rest[0] == letter) {
