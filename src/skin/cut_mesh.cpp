@@ -230,6 +230,7 @@ class PlaneCut {
         }
         for (const auto& [raw, both] : copy) {
             const auto [below, above] = both;
+            if (below < 0 || above < 0) continue;
             if (is_chip(below) != is_chip(above)) so_far_.chip_link.push_back({below, above});
         }
     }
