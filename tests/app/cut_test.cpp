@@ -10,7 +10,7 @@
 #include "skin/new_look.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
 using swage::Json;

@@ -6,7 +6,7 @@
 #include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 namespace fs = std::filesystem;

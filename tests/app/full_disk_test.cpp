@@ -6,7 +6,7 @@
 #include "tests/app/program.h"
 #include "tests/app/small_disk.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
 using swage::Json;

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "tests/app/resumed_run.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 using namespace resumed;
 using swage::Json;

@@ -3,7 +3,7 @@
 #include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 #include "tests/shared/usda.h"
 
 namespace fs = std::filesystem;

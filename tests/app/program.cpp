@@ -9,7 +9,6 @@
 
 #include <atomic>
 #include <fstream>
-#include <sstream>
 
 namespace fs = std::filesystem;
 
@@ -65,13 +64,6 @@ Outcome RunningSwage::wait() {
 Outcome run_swage(const std::vector<std::string>& argument, const fs::path& folder,
                   const std::map<std::string, std::string>& set, const fs::path& program) {
     return RunningSwage(argument, folder, set, program).wait();
-}
-
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
 }
 
 void put_text(const fs::path& file, const std::string& text) {

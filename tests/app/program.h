@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/shared/bytes_of.h"
+
 struct Outcome {
     int code = -1;  // exit code, or 128 + n by signal n
     std::string out, err;
@@ -43,7 +45,7 @@ Outcome run_swage(const std::vector<std::string>& argument,
                   const std::map<std::string, std::string>& set = {},
                   const std::filesystem::path& program = SWAGE_BINARY);
 
-std::string bytes_of(const std::filesystem::path& file);
+using swage::test::bytes_of;
 // Name and bytes of every file below a folder.
 std::map<std::string, std::string> files_below(const std::filesystem::path& folder);
 bool is_whole_png(const std::string& bytes);

@@ -10,7 +10,7 @@
 #include "tests/app/resumed_run.h"
 #include "tests/app/small_disk.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
 using namespace resumed;

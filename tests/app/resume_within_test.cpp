@@ -9,7 +9,7 @@
 
 #include "tests/app/resumed_run.h"
 #include "tests/app/small_disk.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 using namespace resumed;
 using swage::Json;

@@ -3,8 +3,8 @@
 #include "geometry/mesh_write.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/shared/meshes.h"
+#include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
 using swage::test::box_mesh;

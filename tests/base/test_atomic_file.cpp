@@ -7,13 +7,14 @@
 #include <string>
 
 #include "tests/catch.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 namespace fs = std::filesystem;
 
 TEST_CASE("what is left of files that were never whole goes, and nothing else") {
-    const fs::path folder =
-        fs::temp_directory_path() / ("swage-atomic-" + std::to_string(::getpid()));
+    const Scratch scratch;
+    const fs::path& folder = scratch.path();
     fs::create_directories(folder / "frames");
     const fs::path own = temporary_for(folder / "frames/frame_0001.png");
     const fs::path alive = folder / (".film.part" + std::to_string(::getppid()) + ".mp4");
@@ -30,5 +31,4 @@ TEST_CASE("what is left of files that were never whole goes, and nothing else") 
     CHECK_FALSE(fs::exists(gone));
     CHECK(fs::exists(alive));
     for (const fs::path& file : others) CHECK(fs::exists(file));
-    fs::remove_all(folder);
 }

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small meshes and a folder to keep their files in.
+// Small meshes, and folders to keep their files in.
 #pragma once
-
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -14,35 +11,12 @@
 #include "geometry/mesh_repair.h"
 #include "geometry/trimesh.h"
 #include "tests/catch.h"
+#include "tests/shared/bytes_of.h"
+#include "tests/shared/scratch.h"
 
 namespace swage::test {
 
-class Folder {
-  public:
-    Folder() {
-        static int count = 0;
-        path_ = std::filesystem::temp_directory_path() /
-                ("swage_mesh_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-        std::filesystem::create_directories(path_);
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(path_ / name, std::ios::binary) << bytes;
-        return path_ / name;
-    }
-
-  private:
-    std::filesystem::path path_;
-};
-
-inline std::string bytes_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
+using Folder = Scratch;
 
 // The bytes of a number, as binary files hold it.
 template <typename T>

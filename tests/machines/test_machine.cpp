@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/machine.h"
 
-#include <unistd.h>
-
 #include <filesystem>
-#include <fstream>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -12,6 +9,7 @@
 #include "tests/catch.h"
 #include "tests/machines/bodies.h"
 #include "tests/shared/block.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 
@@ -227,17 +225,15 @@ TEST_CASE("tools that cannot be are refused by name") {
 }
 
 TEST_CASE("a mesh that encloses nothing is refused as a tool, with the reason") {
-    const std::filesystem::path file =
-        std::filesystem::temp_directory_path() / fmt::format("swage-sheet-{}.obj", ::getpid());
-    std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
+    const Scratch scratch;
     MachineSpec spec = roller();
     spec.tool[0].shape = ToolShape::mesh;
-    spec.tool[0].mesh = file;
+    spec.tool[0].mesh =
+        scratch.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n");
     spec.tool[0].length = "length";
     const std::string told = refusal(spec);
     INFO(told);
     CHECK(says(told, {"tool support", "encloses nothing", "closed surface", "thicker"}));
-    std::filesystem::remove(file);
 }
 
 TEST_CASE("a tool that starts inside the body is noted") {

@@ -8,9 +8,9 @@
 
 #include "tests/catch.h"
 #include "tests/machines/bodies.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/meshes.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 

@@ -7,9 +7,9 @@
 #include "pipeline/shot.h"
 #include "pipeline/usd_export.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/render/drawn.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/scratch.h"
 #include "tests/shared/usda.h"
 
 using namespace swage;

@@ -5,8 +5,8 @@
 #include "geometry/mesh_write.h"
 #include "pipeline/work_piece.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/shared/meshes.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 

@@ -6,8 +6,8 @@
 #include "geometry/make_shape.h"
 #include "pipeline/work_piece_bytes.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 using test::bytes_of;

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 namespace fs = std::filesystem;

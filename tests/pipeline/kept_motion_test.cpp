@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "pipeline/frame_store.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 using test::bytes_of;

@@ -3,14 +3,14 @@
 
 #include "pipeline/stage_machine.h"
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 #include "tests/shared/block.h"
 
 using namespace swage;
 
 TEST_CASE(
     "it is told which axes of the world a machine's are, and nothing where they are the same") {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     const SceneReading reading =
         read_scene(scratch.write("s.toml",
                                  "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
@@ -51,7 +51,7 @@ TEST_CASE(
 }
 
 TEST_CASE("it is told from which side of the world tools come, and what brings them from above") {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     const auto told = [&](const std::string& stage, const Aggregate& block) {
         const SceneReading reading =
             read_scene(scratch.write("s.toml",

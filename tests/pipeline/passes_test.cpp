@@ -10,10 +10,10 @@
 #include "pipeline/render_directory.h"
 #include "render/image_read.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/render/drawn.h"
 #include "tests/shared/bytes_of.h"
 #include "tests/shared/meshes.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 namespace fs = std::filesystem;

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/plot.h"
 
-#include <fstream>
-#include <sstream>
-
 #include "base/atomic_file.h"
 #include "base/process.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/bytes_of.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 
@@ -75,11 +73,9 @@ TEST_CASE("gnuplot draws every plot, an empty one too") {
         plots.draw();
         CHECK(plots.warnings().empty());
         CHECK_FALSE(std::filesystem::exists(program));
-        std::ifstream in(svg);
-        std::stringstream text;
-        text << in.rdbuf();
-        CHECK(text.str().find("<svg") != std::string::npos);
-        CHECK(text.str().find(curves.stage()) != std::string::npos);
-        CHECK(text.str().find("</svg>") != std::string::npos);
+        const std::string text = test::bytes_of(svg);
+        CHECK(text.find("<svg") != std::string::npos);
+        CHECK(text.find(curves.stage()) != std::string::npos);
+        CHECK(text.find("</svg>") != std::string::npos);
     }
 }

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "pipeline/render_directory.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 namespace fs = std::filesystem;

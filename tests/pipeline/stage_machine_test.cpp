@@ -2,13 +2,13 @@
 #include "pipeline/stage_machine.h"
 
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 #include "tests/shared/block.h"
 
 using namespace swage;
 
 TEST_CASE("a lone gravity points against what the machine calls up, however the body stands") {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     const std::string stage = GENERATE("", "up = \"z\"\n", "up = \"-x\"\n", "axis = \"z\"\n");
     const SceneReading reading =
         read_scene(scratch.write("s.toml",
@@ -37,14 +37,14 @@ TEST_CASE("a lone gravity points against what the machine calls up, however the 
 namespace {
 
 // Of the first mistake that setting up and going its way finds, on a bar of matter.
-std::string told_of_stage(const test::Scratch& scratch, const std::string& stage) {
+std::string told_of_stage(const test::SceneFolder& scratch, const std::string& stage) {
     const SceneReading reading =
         read_scene(scratch.write("s.toml",
                                  "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
                                  "[[stage]]\n" +
                                      stage),
                    {}, test::shipped());
-    INFO(test::told(reading.mistakes, scratch.folder()));
+    INFO(test::told(reading.mistakes, scratch.path()));
     REQUIRE(reading.scene);
     const StageSpec& spec = reading.scene->stage[0];
     const Aggregate body = test::make_block(16, 4, 4, 0.1, reading.scene->work_piece().material);
@@ -52,7 +52,7 @@ std::string told_of_stage(const test::Scratch& scratch, const std::string& stage
         stage_legs(spec, stage_machine(spec, body, {}, 1), 4, body);
     } catch (const SceneError& error) {
         CHECK(error.code() == ExitCode::scene);
-        return test::told({error.mistakes()[0]}, scratch.folder());
+        return test::told({error.mistakes()[0]}, scratch.path());
     }
     return "nothing";
 }
@@ -81,7 +81,7 @@ TEST_CASE("an expression that has no value, or none that can be meant, is told a
         {"move = [1, 0, 0]", "machine = \"slide\"\n",
          "machines/slide.toml:6:9: machine slide: the motion of grip jaw must be 0 at t = 0"},
     };
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     for (const Case& one : cases) {
         scratch.write("machines/slide.toml",
                       "[[grip]]\nname = \"jaw\"\nfrom = [-9, -9, -9]\nto = [9, 9, 9]\n"
@@ -94,7 +94,7 @@ TEST_CASE("an expression that has no value, or none that can be meant, is told a
 }
 
 TEST_CASE("what a part of a machine cannot do at the work-piece is told where its file has it") {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     const auto told = [&](const std::string& part) {
         scratch.write("machines/odd.toml", part);
         return told_of_stage(scratch, "machine = \"odd\"\n");
@@ -111,7 +111,7 @@ TEST_CASE("what a part of a machine cannot do at the work-piece is told where it
 }
 
 TEST_CASE("a default out of its range is told where it stands, a given value where it is given") {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     scratch.write("machines/ball.toml",
                   "[parameter.size]\nquantity = \"length\"\ndefault = \"2 m\"\nlow = 0\n"
                   "high = \"height\"\n[[tool]]\nname = \"ball\"\nshape = \"sphere\"\n"
@@ -124,7 +124,7 @@ TEST_CASE("a default out of its range is told where it stands, a given value whe
 }
 
 TEST_CASE("a blade that never moves is warned of by name, one that goes or falls is not") {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     const auto told = [&](const std::string& motion, const std::string& keys) {
         scratch.write("machines/saw.toml",
                       "[[blade]]\nname = \"tooth\"\nedge = [[0, 1, -1], [0, 1, 1]]\n" + motion);
@@ -134,7 +134,7 @@ TEST_CASE("a blade that never moves is warned of by name, one that goes or falls
                                      "[[stage]]\nmachine = \"saw\"\n" +
                                          keys),
                        {}, test::shipped());
-        return test::told(reading.mistakes, scratch.folder());
+        return test::told(reading.mistakes, scratch.path());
     };
     CHECK(told("", "").find("nothing happens: blade tooth never moves") != std::string::npos);
     CHECK(told("[blade.motion]\nmove = [0, \"-t\", 0]\n", "").empty());
@@ -143,7 +143,7 @@ TEST_CASE("a blade that never moves is warned of by name, one that goes or falls
 
 TEST_CASE(
     "a later machine that cannot stand at the work-piece as it is at first is told of before") {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     const SceneReading reading =
         read_scene(scratch.write("s.toml",
                                  "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"

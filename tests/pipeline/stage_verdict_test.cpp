@@ -5,7 +5,7 @@
 #include "pipeline/stage_machine.h"
 #include "sim/static_forces.h"
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 #include "tests/shared/block.h"
 
 using namespace swage;
@@ -15,7 +15,7 @@ namespace {
 // A bar that the shipped cutter parts, 20 cm x 5 cm x 5 cm.
 struct CutBar {
     explicit CutBar(const std::string& material) {
-        const test::Scratch scratch;
+        const test::SceneFolder scratch;
         const std::string text = "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"" + material +
                                  "\"\n[[stage]]\nmachine = \"cut\"\nframes = 8\n";
         reading = read_scene(scratch.write("s.toml", text), {}, test::shipped());

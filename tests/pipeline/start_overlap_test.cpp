@@ -6,7 +6,7 @@
 #include "scene/find.h"
 #include "scene/read_machine.h"
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
 

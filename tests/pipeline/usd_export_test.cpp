@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/shared/bytes_of.h"
 #include "tests/shared/meshes.h"
+#include "tests/shared/scratch.h"
 #include "tests/shared/usda.h"
 
 using namespace swage;

@@ -11,9 +11,9 @@
 #include "render/image_read.h"
 #include "render/studio.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/render/drawn.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/scratch.h"
 #include "tests/shared/usda.h"
 
 using namespace swage;

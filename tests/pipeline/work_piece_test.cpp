@@ -7,9 +7,9 @@
 #include "geometry/mesh_write.h"
 #include "geometry/triangle_tree.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
 #include "tests/shared/lattice_fixture.h"
 #include "tests/shared/meshes.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 using test::box_mesh;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Depth, normals and whose each pixel is, for compositing.
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <random>
 
@@ -11,6 +10,7 @@
 #include "render/exr.h"
 #include "tests/render/drawn.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 namespace fs = std::filesystem;
@@ -159,8 +159,7 @@ TEST_CASE("a file of floats is read by another program as what was written") {
         WARN("skipped: no ffmpeg");
         return;
     }
-    const fs::path folder = fs::temp_directory_path() / fmt::format("swage-exr-{}", ::getpid());
-    fs::create_directory(folder);
+    const Scratch scratch;
     // Not full blocks of rows, smooth and rough values, large and less than nothing.
     const int width = 37, height = GENERATE(1, 16, 43);
     std::mt19937 random(7);
@@ -171,12 +170,12 @@ TEST_CASE("a file of floats is read by another program as what was written") {
         channels[2].value.push_back(i % 5 == 0 ? 1e10f : -1.0f / 3);
     }
     const std::string bytes = encode_exr(width, height, channels);
-    std::ofstream(folder / "x.exr", std::ios::binary) << bytes;
+    scratch.write("x.exr", bytes);
     const std::string command = fmt::format(
         "ffmpeg -v error -layer normal -i {0}/x.exr -f rawvideo -pix_fmt gbrpf32le {0}/x.raw",
-        folder.string());
+        scratch.path().string());
     CHECK(std::system(command.c_str()) == 0);
-    const std::string raw = test::bytes_of(folder / "x.raw");
+    const std::string raw = test::bytes_of(scratch / "x.raw");
     const std::size_t plane = std::size_t(width) * height;
     REQUIRE(raw.size() == 3 * plane * sizeof(float));
     // Green, blue and red are y, z and x.
@@ -186,5 +185,4 @@ TEST_CASE("a file of floats is read by another program as what was written") {
         CHECK(std::memcmp(raw.data() + p * plane * sizeof(float), value.data(),
                           plane * sizeof(float)) == 0);
     }
-    fs::remove_all(folder);
 }

@@ -13,6 +13,7 @@
 #include "render/png.h"
 #include "tests/catch.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 using test::bytes_of;
@@ -34,45 +35,39 @@ Image plain(int width, int height, std::uint8_t value) {
             std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), value)};
 }
 
-struct Folder {
-    fs::path path = fs::temp_directory_path() / fmt::format("swage_pictures_{}", ::getpid());
-    Folder() { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
-};
-
 }  // namespace
 
 TEST_CASE("a PNG read again has the same pixels", "[png]") {
-    const Folder folder;
+    const Scratch folder;
     for (const auto& [width, height] : {std::pair(1, 1), {7, 3}, {640, 361}}) {
         const Image image = pattern(width, height);
-        write_png(folder.path / "a.png", image);
-        const Image again = read_image(folder.path / "a.png");
+        write_png(folder / "a.png", image);
+        const Image again = read_image(folder / "a.png");
         CHECK(again.width == width);
         CHECK(again.height == height);
         CHECK((again.rgb == image.rgb));
         CHECK(encode_png(image) == encode_png(image));
     }
-    CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);  // no temporary is left
+    CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // no temporary is left
 }
 
 TEST_CASE("a picture that cannot be read says why", "[png]") {
-    const Folder folder;
-    CHECK_THROWS_AS(read_image(folder.path / "none.png"), Error);
-    CHECK_THROWS_AS(read_image(folder.path), Error);
-    std::ofstream(folder.path / "text.png") << "this is no picture";
-    CHECK_THROWS_AS(read_image(folder.path / "text.png"), Error);
+    const Scratch folder;
+    CHECK_THROWS_AS(read_image(folder / "none.png"), Error);
+    CHECK_THROWS_AS(read_image(folder.path()), Error);
+    std::ofstream(folder / "text.png") << "this is no picture";
+    CHECK_THROWS_AS(read_image(folder / "text.png"), Error);
     const std::string whole = encode_png(pattern(64, 64));
-    std::ofstream(folder.path / "half.png", std::ios::binary) << whole.substr(0, whole.size() / 2);
-    CHECK_THROWS_AS(read_image(folder.path / "half.png"), Error);
-    std::ofstream(folder.path / "whole.png", std::ios::binary) << whole;
-    CHECK_THROWS_AS(read_image(folder.path / "whole.png", 63), Error);
+    std::ofstream(folder / "half.png", std::ios::binary) << whole.substr(0, whole.size() / 2);
+    CHECK_THROWS_AS(read_image(folder / "half.png"), Error);
+    std::ofstream(folder / "whole.png", std::ios::binary) << whole;
+    CHECK_THROWS_AS(read_image(folder / "whole.png", 63), Error);
     CHECK_THROWS_AS(encode_png(Image{}), Error);
 }
 
 TEST_CASE("a file larger than any picture is refused unread") {
-    const Folder folder;
-    const fs::path file = folder.path / "huge.png";
+    const Scratch folder;
+    const fs::path file = folder / "huge.png";
     std::ofstream(file) << "x";
     fs::resize_file(file, std::uintmax_t{3} << 30);  // a hole
     try {
@@ -176,46 +171,46 @@ TEST_CASE("a film appears under its name when whole, with the same bytes each ti
         WARN("skipped: ffmpeg is not in PATH");
         return;
     }
-    const Folder folder;
+    const Scratch folder;
     const auto make = [&](const fs::path& file, int width, int height) {
         Film film(file, width, height, FrameRate{});
         for (unsigned i = 0; i < 12; ++i) film.add(pattern(width, height, i));
         CHECK_FALSE(fs::exists(file));
         return film.finish();
     };
-    CHECK(make(folder.path / "a.mp4", 64, 48));
-    CHECK(make(folder.path / "b.mp4", 64, 48));
-    CHECK(bytes_of(folder.path / "a.mp4") == bytes_of(folder.path / "b.mp4"));
-    CHECK(bytes_of(folder.path / "a.mp4").size() > 1000);
-    CHECK(make(folder.path / "odd.mp4", 33, 17));
-    CHECK(make(folder.path / "dot.mp4", 1, 1));
-    CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 4);
+    CHECK(make(folder / "a.mp4", 64, 48));
+    CHECK(make(folder / "b.mp4", 64, 48));
+    CHECK(bytes_of(folder / "a.mp4") == bytes_of(folder / "b.mp4"));
+    CHECK(bytes_of(folder / "a.mp4").size() > 1000);
+    CHECK(make(folder / "odd.mp4", 33, 17));
+    CHECK(make(folder / "dot.mp4", 1, 1));
+    CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 4);
 }
 
 TEST_CASE("a film that cannot be made is a warning and leaves nothing behind", "[film]") {
-    const Folder folder;
+    const Scratch folder;
     {
-        Film film(folder.path / "no_such_folder/a.mp4", 64, 48, FrameRate{});
+        Film film(folder / "no_such_folder/a.mp4", 64, 48, FrameRate{});
         for (unsigned i = 0; i < 200; ++i) film.add(pattern(64, 48, i));
         CHECK_FALSE(film.finish());
     }
     {
-        Film unfinished(folder.path / "b.mp4", 64, 48, FrameRate{});
+        Film unfinished(folder / "b.mp4", 64, 48, FrameRate{});
         unfinished.add(pattern(64, 48));
     }
     {
-        Film empty(folder.path / "c.mp4", 64, 48, FrameRate{});
+        Film empty(folder / "c.mp4", 64, 48, FrameRate{});
         CHECK_FALSE(empty.finish());
     }
     const std::string path = std::getenv("PATH");
-    ::setenv("PATH", folder.path.c_str(), 1);
+    ::setenv("PATH", folder.path().c_str(), 1);
     {
-        Film film(folder.path / "d.mp4", 64, 48, FrameRate{});
+        Film film(folder / "d.mp4", 64, 48, FrameRate{});
         film.add(pattern(64, 48));
         CHECK_FALSE(film.finish());
     }
     ::setenv("PATH", path.c_str(), 1);
-    CHECK(fs::is_empty(folder.path));
-    Film film(folder.path / "e.mp4", 64, 48, FrameRate{});
+    CHECK(fs::is_empty(folder.path()));
+    Film film(folder / "e.mp4", 64, 48, FrameRate{});
     CHECK_THROWS_AS(film.add(pattern(48, 64)), Error);
 }

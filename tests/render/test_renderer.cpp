@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures are compared with tolerance: their bytes differ between processors and versions of Mesa.
-#include <unistd.h>
-
 #include <filesystem>
-#include <fstream>
 #include <thread>
 
 #include "base/srgb.h"
 #include "render/draw_mesh.h"
 #include "render/png.h"
 #include "tests/render/drawn.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 namespace fs = std::filesystem;
@@ -113,7 +111,8 @@ TEST_CASE("an endless floor has no edge, and takes shadows as the ground does", 
 
 TEST_CASE("a texture's colours come through as if the surface had them", "[renderer]") {
     if (!can_draw()) return;
-    const fs::path file = fs::temp_directory_path() / fmt::format("swage_{}.png", ::getpid());
+    const Scratch scratch;
+    const fs::path file = scratch / "texture.png";
     RenderSettings settings = small_picture();
     settings.camera[0] = {};
     settings.camera[0].azimuth = 0;
@@ -146,12 +145,12 @@ TEST_CASE("a texture's colours come through as if the surface had them", "[rende
         const std::uint8_t* p = a.pixel(80, 60);
         CHECK((p[0] > p[2]) == (srgb[0] > srgb[2]));
     }
-    fs::remove(file);
 }
 
 TEST_CASE("a texture stands upright", "[renderer]") {
     if (!can_draw()) return;
-    const fs::path file = fs::temp_directory_path() / fmt::format("swage_up_{}.png", ::getpid());
+    const Scratch scratch;
+    const fs::path file = scratch / "texture.png";
     Image texture{64, 64, {}};  // red over blue
     for (int i = 0; i < 64 * 64; ++i) {
         for (const int c : {i < 2048 ? 200 : 0, 0, i < 2048 ? 0 : 200}) {
@@ -168,7 +167,6 @@ TEST_CASE("a texture stands upright", "[renderer]") {
                               {{-0.5, -0.5, -0.1}, {0.5, 0.5, 0.1}});
     CHECK(image.pixel(80, 40)[0] > image.pixel(80, 40)[2] + 50);
     CHECK(image.pixel(80, 80)[2] > image.pixel(80, 80)[0] + 50);
-    fs::remove(file);
 }
 
 TEST_CASE("a missing texture leaves the plain colour", "[renderer]") {

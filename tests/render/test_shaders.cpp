@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <unistd.h>
-
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "base/error.h"
 #include "render/renderer.h"
 #include "render/shaders.h"
 #include "tests/catch.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 namespace fs = std::filesystem;
@@ -34,10 +32,9 @@ TEST_CASE("a driver's complaint names the file it is about", "[shaders]") {
 }
 
 TEST_CASE("a user's own shader is taken, and its mistake reported by file and line", "[shaders]") {
-    const fs::path folder = fs::temp_directory_path() / fmt::format("swage_sh_{}", ::getpid());
-    fs::create_directories(folder);
-    std::ofstream(folder / "film.glsl") << "// one\n// two\nthis is no shader\n";
-    ::setenv("SWAGE_SHADERS", folder.c_str(), 1);
+    const Scratch scratch;
+    scratch.write("film.glsl", "// one\n// two\nthis is no shader\n");
+    ::setenv("SWAGE_SHADERS", scratch.path().c_str(), 1);
     std::string message;
     try {
         Renderer renderer(RenderSettings{}, Box{}, 0);
@@ -45,7 +42,6 @@ TEST_CASE("a user's own shader is taken, and its mistake reported by file and li
         message = error.what();
     }
     ::unsetenv("SWAGE_SHADERS");
-    fs::remove_all(folder);
     INFO(message);
     CHECK((message.find("film.glsl:3:") != std::string::npos ||
            message.find("no OpenGL") != std::string::npos));

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 
 namespace swage::test {
 
@@ -23,10 +23,10 @@ struct Parts {
 
 inline std::string mistakes_in(const std::string& text,
                                const std::vector<std::string>& overrides = {}) {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const SceneReading reading = read_scene(scratch.write("s.toml", text), overrides, shipped());
     CHECK(reading.scene.has_value() == (exit_code(reading.mistakes) == ExitCode::done));
-    return told(reading.mistakes, scratch.folder());
+    return told(reading.mistakes, scratch.path());
 }
 
 inline Parts with(std::string Parts::*part, const std::string& text) {

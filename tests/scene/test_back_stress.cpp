@@ -58,7 +58,7 @@ TEST_CASE("a back stress that cannot be is refused at its place, with what would
 }
 
 TEST_CASE("a back stress reaches its material, and a scene can take it away") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("materials.toml", R"([bent]
 young_modulus = "200 GPa"
 density = 7800
@@ -71,7 +71,7 @@ back_strain = 0.008
         const Parts parts = with(&Parts::material, "[material]\nname = \"bent\"\n" + more);
         const SceneReading reading =
             read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
-        INFO(told(reading.mistakes, scratch.folder()));
+        INFO(told(reading.mistakes, scratch.path()));
         REQUIRE(reading.scene);
         return reading.scene->work_piece().material;
     };

@@ -394,7 +394,7 @@ TEST_CASE("mistakes in loads are found at their place") {
 }
 
 TEST_CASE("a huge picture is refused for resources, a missing mesh as a mesh") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto code = [&](const Parts& parts) {
         return exit_code(read_scene(scratch.write("s.toml", parts.text()), {}, shipped()).mistakes);
     };
@@ -443,15 +443,15 @@ TEST_CASE("names that cannot be found get the known ones, names that cannot be f
 }
 
 TEST_CASE("a mesh that cannot be read is refused at once, with the path as written and resolved") {
-    const Scratch scratch;
-    std::filesystem::create_directories(scratch.folder() / "folder.obj");
-    REQUIRE(::mkfifo((scratch.folder() / "pipe.obj").c_str(), 0600) == 0);
+    const SceneFolder scratch;
+    std::filesystem::create_directories(scratch.path() / "folder.obj");
+    REQUIRE(::mkfifo((scratch.path() / "pipe.obj").c_str(), 0600) == 0);
     const auto mistakes = [&](const std::string& name) {
         const Parts parts = with(&Parts::mesh, "[mesh]\nfile = \"" + name + "\"\n");
         const auto file = scratch.write("scenes/s.toml", parts.text());
-        return told(read_scene(file, {}, shipped()).mistakes, scratch.folder());
+        return told(read_scene(file, {}, shipped()).mistakes, scratch.path());
     };
-    const std::string folder = scratch.folder().string();
+    const std::string folder = scratch.path().string();
     CHECK(mistakes("../no.obj") ==
           "scenes/s.toml:2:8: the mesh \"../no.obj\" does not exist (" + folder + "/no.obj)\n");
     CHECK(mistakes("../folder.obj").find("is a folder, not a file") != std::string::npos);
@@ -464,7 +464,7 @@ TEST_CASE("a mesh that cannot be read is refused at once, with the path as writt
 }
 
 TEST_CASE("a mistake among the materials is told once, however many bodies name one") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("materials.toml", "[jelly]\nyoung_modulus = 1e3\ndensity = 1000\ncolour = 3\n");
     std::string text = Parts().text();
     for (const char* name : {"a", "b"}) {
@@ -472,7 +472,7 @@ TEST_CASE("a mistake among the materials is told once, however many bodies name 
                 "\"\nfile = \"bar.obj\"\nmaterial = \"jelly\"\n";
     }
     const SceneReading reading = read_scene(scratch.write("s.toml", text), {}, shipped());
-    const std::string all = told(reading.mistakes, scratch.folder());
+    const std::string all = told(reading.mistakes, scratch.path());
     INFO(all);
     const std::size_t first = all.find("unknown key \"colour\"");
     REQUIRE(first != std::string::npos);

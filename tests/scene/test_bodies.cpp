@@ -20,7 +20,7 @@ Parts beside(const std::string& lines) {
 }  // namespace
 
 TEST_CASE("a body takes material and mold from the work-piece where it has no own") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     Parts parts = beside(R"(file = "bar.obj"
 at = ["1 cm", 0, "-2 cm"]
 turn = [0, 0, "90 deg"]
@@ -42,7 +42,7 @@ name = "lead"
 friction = 0.4
 )");
     const SceneReading reading = read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.mistakes.empty());
     const std::vector<BodySpec>& body = reading.scene->body;
     REQUIRE(body.size() == 4);
@@ -67,11 +67,11 @@ friction = 0.4
 }
 
 TEST_CASE("a solver left out is explicit where something is to move, else quasi-static") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto solver = [&](const Parts& parts) {
         const SceneReading reading =
             read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
-        INFO(told(reading.mistakes, scratch.folder()));
+        INFO(told(reading.mistakes, scratch.path()));
         REQUIRE(reading.scene);
         return reading.scene->stage[0].sim.solver;
     };

@@ -85,7 +85,7 @@ TEST_CASE("a flow curve in pascals beside other units is taken as it says") {
 namespace {
 
 // A scene of this section [material], beside a file of materials that has one with a curve.
-SceneReading read_with(const Scratch& scratch, const std::string& section) {
+SceneReading read_with(const SceneFolder& scratch, const std::string& section) {
     scratch.write("materials.toml", R"([drawn]
 young_modulus = "200 GPa"
 density = 7800
@@ -95,9 +95,9 @@ flow_curve = [[0, "200 MPa"], [0.1, "300 MPa"]]
     return read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
 }
 Material material_of(const std::string& section) {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const SceneReading reading = read_with(scratch, section);
-    INFO(section << told(reading.mistakes, scratch.folder()));
+    INFO(section << told(reading.mistakes, scratch.path()));
     REQUIRE(reading.scene);
     return reading.scene->work_piece().material;
 }
@@ -146,22 +146,22 @@ TEST_CASE("what a scene says of yielding takes the place of a named material's c
         material_of("name = \"structural_steel\"\nflow_curve = [[0, 1e8], [1, 2e8]]\n").hardening ==
         0);
 
-    const Scratch scratch;
+    const SceneFolder scratch;
     SceneReading reading = read_with(scratch, "name = \"drawn\"\nyield_stress = 1e8\n");
-    CHECK(told(reading.mistakes, scratch.folder())
+    CHECK(told(reading.mistakes, scratch.path())
               .starts_with("s.toml:5:16: warning: yield_stress replaces the flow_curve of drawn"));
     reading = read_with(scratch, "name = \"drawn\"\nhardening = 1e8\n");
-    CHECK(told(reading.mistakes, scratch.folder())
+    CHECK(told(reading.mistakes, scratch.path())
               .starts_with("s.toml:5:13: drawn hardens by its flow_curve: give yield_stress beside "
                            "hardening, or another flow_curve"));
 }
 
 TEST_CASE("what flows at next to no stress, or at as much as it is stiff, lacks a unit") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto warned = [&](const std::string& more) {
         const SceneReading reading =
             read_with(scratch, "young_modulus = \"200 GPa\"\ndensity = 7800\n" + more);
-        return told(reading.mistakes, scratch.folder()).find("is a unit missing") !=
+        return told(reading.mistakes, scratch.path()).find("is a unit missing") !=
                std::string::npos;
     };
     CHECK(warned("flow_curve = [[0, 200], [0.1, 300]]\n"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which axis and up a stage has where it leaves them to its machine.
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -18,7 +18,7 @@ struct Read {
     std::string told;
 };
 Read read(const std::string& machine, const std::string& stage) {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("machines/mine.toml", "help = \"tries\"\n" + machine + kGrip);
     const SceneReading reading =
         read_scene(scratch.write("s.toml",
@@ -26,7 +26,7 @@ Read read(const std::string& machine, const std::string& stage) {
                                  "\"rubber\"\n[[stage]]\n" +
                                      stage),
                    {}, shipped());
-    if (!reading.scene) return {{}, told(reading.mistakes, scratch.folder())};
+    if (!reading.scene) return {{}, told(reading.mistakes, scratch.path())};
     CHECK(reading.mistakes.empty());
     return {reading.scene->stage.at(0), ""};
 }

@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "scene/catalogue.h"
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -30,7 +30,7 @@ frames = 60
 size = [1280, 720]
 )";
 
-SceneReading read(const Scratch& scratch, const std::string& text,
+SceneReading read(const SceneFolder& scratch, const std::string& text,
                   const std::vector<std::string>& overrides = {}) {
     return read_scene(scratch.write("scene.toml", text), overrides, shipped());
 }
@@ -40,17 +40,17 @@ const std::string kHead = "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubb
 }  // namespace
 
 TEST_CASE("the sample scene reads whole, in SI") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("meshes/calf.obj", "v 0 0 0\n");
     const auto file = scratch.write("scenes/sample.toml", kSample);
     const SceneReading reading = read_scene(file, {}, shipped());
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.mistakes.empty());
     REQUIRE(reading.scene);
     const SceneSpec& scene = *reading.scene;
     CHECK(scene.name == "sample");
     CHECK(scene.file == file);
-    CHECK(scene.work_piece().mesh.file == scratch.folder() / "meshes/calf.obj");
+    CHECK(scene.work_piece().mesh.file == scratch.path() / "meshes/calf.obj");
     CHECK(scene.work_piece().mesh.length.value() == Approx(0.4));
     CHECK(scene.work_piece().material.name == "rubber");
     CHECK(scene.work_piece().material.young_modulus == Approx(2e6));
@@ -72,7 +72,7 @@ TEST_CASE("the sample scene reads whole, in SI") {
 }
 
 TEST_CASE("every key of a scene reaches its setting") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const SceneReading reading = read(scratch, R"(
 [mesh]
 file = "bar.obj"
@@ -149,7 +149,7 @@ orbit = "180 deg"
 [output]
 meshes_per_frame = true
 )");
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.scene);
     CHECK(reading.mistakes.empty());
     const SceneSpec& scene = *reading.scene;
@@ -230,7 +230,7 @@ meshes_per_frame = true
 }
 
 TEST_CASE("camera keys are read in any order and come sorted") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const SceneReading reading = read(scratch, kHead + R"(
 [[stage]]
 machine = "bend"
@@ -240,7 +240,7 @@ keys = [
     {at = 0, azimuth = "20 deg", target = ["10 cm", 0, 0]},
 ]
 )");
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.scene);
     const auto& camera = reading.scene->render.camera;
     REQUIRE(camera.size() == 2);
@@ -252,10 +252,10 @@ keys = [
 }
 
 TEST_CASE("a single gravity points against a stage's up, and the pictures have that upward") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto scene_with = [&](const std::string& stages) {
         const SceneReading reading = read(scratch, kHead + stages);
-        INFO(told(reading.mistakes, scratch.folder()));
+        INFO(told(reading.mistakes, scratch.path()));
         REQUIRE(reading.scene);
         return *reading.scene;
     };
@@ -279,7 +279,7 @@ TEST_CASE("a single gravity points against a stage's up, and the pictures have t
 }
 
 TEST_CASE("what an earlier stage has strained may move without gravity, load or speed") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const SceneReading reading = read(scratch, kHead + R"([mold]
 across = 4
 [[stage]]
@@ -290,23 +290,23 @@ machine = "hold"
 solver = "explicit"
 duration = "1 s"
 )");
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     CHECK(reading.mistakes.empty());
 }
 
 TEST_CASE("a byte order mark, carriage returns and comments change nothing") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const std::string plain = kHead + "[[stage]]\nmachine = \"bend\" # with care\n";
     std::string odd = "\xEF\xBB\xBF";
     for (char c : plain) odd += c == '\n' ? std::string("\r\n") : std::string(1, c);
     const SceneReading reading = read(scratch, odd);
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.scene);
     CHECK(reading.scene->stage.at(0).machine.name == "bend");
 }
 
 TEST_CASE("paths are relative to the file they stand in, from wherever the program runs") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("deep/er/scene.toml",
                   "[mesh]\nfile = \"../../bar.obj\"\n[material]\nname = "
                   "\"rubber\"\n[[inset]]\nname = \"lead\"\nfile = \"../core.obj\"\n"
@@ -318,33 +318,33 @@ TEST_CASE("paths are relative to the file they stand in, from wherever the progr
                   "\"height\"\nat = [0, 0, 0]\n");
     const auto before = std::filesystem::current_path();
     for (const char* from : {".", "deep", "deep/er"}) {
-        std::filesystem::current_path(scratch.folder() / from);
-        const auto file = std::filesystem::relative(scratch.folder() / "deep/er/scene.toml",
-                                                    scratch.folder() / from);
+        std::filesystem::current_path(scratch.path() / from);
+        const auto file =
+            std::filesystem::relative(scratch.path() / "deep/er/scene.toml", scratch.path() / from);
         const SceneReading reading = read_scene(file, {}, shipped());
-        INFO(told(reading.mistakes, scratch.folder()));
+        INFO(told(reading.mistakes, scratch.path()));
         REQUIRE(reading.scene);
-        CHECK(reading.scene->work_piece().mesh.file == scratch.folder() / "bar.obj");
+        CHECK(reading.scene->work_piece().mesh.file == scratch.path() / "bar.obj");
         CHECK(reading.scene->stage[0].machine.tool[0].mesh ==
-              scratch.folder() / "deep/mine/tool.obj");
-        CHECK(reading.scene->work_piece().inset[0].file == scratch.folder() / "deep/core.obj");
+              scratch.path() / "deep/mine/tool.obj");
+        CHECK(reading.scene->work_piece().inset[0].file == scratch.path() / "deep/core.obj");
         const auto& inputs = reading.scene->inputs;
         for (const char* file : {"deep/mine/tool.obj", "deep/core.obj"}) {
-            CHECK(std::count(inputs.begin(), inputs.end(), scratch.folder() / file) == 1);
+            CHECK(std::count(inputs.begin(), inputs.end(), scratch.path() / file) == 1);
         }
     }
     std::filesystem::current_path(before);
 }
 
 TEST_CASE("machines and materials beside the scene come before the shipped ones") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("materials.toml",
                   "[rubber]\nyoung_modulus = \"5 MPa\"\ndensity = 900\n[jelly]\nyoung_modulus = "
                   "1e3\ndensity = 1000\n");
     scratch.write("machines/bend.toml",
                   "[[grip]]\nname = \"all\"\nfrom = [-1, -1, -1]\nto = [1, 1, 1]\n");
     const SceneReading reading = read(scratch, kHead + "[[stage]]\nmachine = \"bend\"\n");
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.scene);
     CHECK(reading.scene->work_piece().material.young_modulus == 5e6);
     CHECK(reading.scene->stage[0].machine.grip.size() == 1);
@@ -355,13 +355,13 @@ TEST_CASE("machines and materials beside the scene come before the shipped ones"
 }
 
 TEST_CASE("a material that yields can be made elastic, and one that breaks whole") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     for (const char* infinite : {"inf", "+inf", "\"inf\"", "\"inf MPa\"", "\" +inf N/mm2 \""}) {
         const SceneReading reading =
             read(scratch, std::string("[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"pla\"\n") +
                               "yield_stress = " + infinite + "\nstrength = " + infinite +
                               "\n[[stage]]\nmachine = \"bend\"\n");
-        INFO(infinite << "\n" << told(reading.mistakes, scratch.folder()));
+        INFO(infinite << "\n" << told(reading.mistakes, scratch.path()));
         REQUIRE(reading.scene);
         CHECK(reading.mistakes.empty());
         CHECK(std::isinf(reading.scene->work_piece().material.yield_stress));
@@ -370,7 +370,7 @@ TEST_CASE("a material that yields can be made elastic, and one that breaks whole
 }
 
 TEST_CASE("overrides count as if the file said so") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const std::string text = kHead +
                              "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\n[[stage]]\n"
                              "machine = \"twist\"\nname = \"last\"\n";
@@ -380,7 +380,7 @@ TEST_CASE("overrides count as if the file said so") {
               "stage.twist.remold=true", "material.young_modulus=2 GPa", "render.size=[64, 48]",
               "render.camera.azimuth=30 deg", "mold.across=3", "mold.across=4",
               "output.meshes_per_frame=true", "material.name=\"copper\""});
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.scene);
     const SceneSpec& scene = *reading.scene;
     CHECK(scene.stage[0].parameter.at("angle") == Approx(kPi / 4));
@@ -397,12 +397,12 @@ TEST_CASE("overrides count as if the file said so") {
 }
 
 TEST_CASE("an override of across or spacing counts instead of the file's of the other") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto mold = [&](const std::string& file, const std::vector<std::string>& overrides) {
         const std::string text =
             kHead + "[mold]\n" + file + "\n[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\n";
         const SceneReading reading = read(scratch, text, overrides);
-        INFO(told(reading.mistakes, scratch.folder()));
+        INFO(told(reading.mistakes, scratch.path()));
         REQUIRE(reading.scene);
         return reading.scene->work_piece().mold;
     };
@@ -464,7 +464,7 @@ TEST_CASE("the shipped materials are many and within sense") {
 }
 
 TEST_CASE("reading takes time in proportion to the stages and keys") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto seconds = [&](int stages) {
         std::string text = kHead;
         for (int n = 0; n < stages; ++n) {

@@ -37,19 +37,18 @@ TEST_CASE("control characters that a scene names are shown, and cut no sentence 
 }
 
 TEST_CASE("scene files that cannot be files are refused without blocking") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto mistakes = [&](const std::filesystem::path& file) {
-        return told(read_scene(file, {}, shipped()).mistakes, scratch.folder());
+        return told(read_scene(file, {}, shipped()).mistakes, scratch.path());
     };
-    CHECK(mistakes(scratch.folder() / "no.toml") == "no.toml: the file does not exist\n");
-    CHECK(mistakes(scratch.folder()).find("the file is a folder, not a file") != std::string::npos);
+    CHECK(mistakes(scratch.path() / "no.toml") == "no.toml: the file does not exist\n");
+    CHECK(mistakes(scratch.path()).find("the file is a folder, not a file") != std::string::npos);
     CHECK(mistakes("/dev/zero") == "/dev/zero: the file is not a regular file\n");
-    REQUIRE(::mkfifo((scratch.folder() / "pipe.toml").c_str(), 0600) == 0);
-    CHECK(mistakes(scratch.folder() / "pipe.toml") ==
-          "pipe.toml: the file is not a regular file\n");
+    REQUIRE(::mkfifo((scratch.path() / "pipe.toml").c_str(), 0600) == 0);
+    CHECK(mistakes(scratch.path() / "pipe.toml") == "pipe.toml: the file is not a regular file\n");
     scratch.write("large.toml", "");
-    std::filesystem::resize_file(scratch.folder() / "large.toml", std::uint64_t{1} << 30);
-    CHECK(mistakes(scratch.folder() / "large.toml") ==
+    std::filesystem::resize_file(scratch.path() / "large.toml", std::uint64_t{1} << 30);
+    CHECK(mistakes(scratch.path() / "large.toml") ==
           "large.toml: the file is larger than 64 MiB\n");
 }
 
@@ -83,7 +82,7 @@ TEST_CASE("a key of thousands of parts is refused where it stands") {
     std::string nested = "1";
     for (int n = 0; n < 250; ++n) nested = "{" + most + nested + "}";
     CHECK(mistakes_in("x = " + nested + "\n").find("unknown") != std::string::npos);
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto scene = scratch.write("s.toml", Parts().text());
     for (const std::string& text :
          {"material.density={" + deep + "=1}", "material." + deep + "=1"}) {
@@ -94,7 +93,7 @@ TEST_CASE("a key of thousands of parts is refused where it stands") {
 }
 
 TEST_CASE("no damage to a scene's bytes does more than earn a mistake") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     Parts parts;
     parts.rest += "camera = {keys = [{at = 0.5, eye = [0, 1, 2], target = [0, 0, 0]}]}\n";
     const std::string whole = parts.text();
@@ -175,14 +174,14 @@ TEST_CASE("blanks around the parts of an override's key are not of it") {
 }
 
 TEST_CASE("all mistakes of all files come in one reading, in the order of the files") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("machines/odd.toml", "[[grip]]\nnme = \"a\"\nfrom = [0, 0, 0]\nto = [1, 1, 1]\n");
     const auto file = scratch.write("s.toml",
                                     "[mesh]\nfile = \"no.obj\"\nlenght = 1\n[material]\nname = "
                                     "\"ruber\"\n[mold]\nacross = 0\nspacing =\n[[stage]]\nmachine "
                                     "= \"odd\"\nanything = 3\nframes = \"x\"\n[[stage]]\nmachine = "
                                     "\"odd\"\n");
-    const std::string text = told(read_scene(file, {}, shipped()).mistakes, scratch.folder());
+    const std::string text = told(read_scene(file, {}, shipped()).mistakes, scratch.path());
     INFO(text);
     std::size_t at = 0;
     for (const char* place :

@@ -77,7 +77,7 @@ TEST_CASE("a material's key that nothing in the scene asks is told") {
 
 TEST_CASE("a tool's friction may go by the place of another tool") {
     const auto told_with = [](const std::string& friction) {
-        const Scratch scratch;
+        const SceneFolder scratch;
         scratch.write("machines/pair.toml",
                       "[[tool]]\nname = \"one\"\nshape = \"sphere\"\nradius = 0.1\n"
                       "at = [0, 1, 0]\nfriction = 0.3\n"
@@ -86,7 +86,7 @@ TEST_CASE("a tool's friction may go by the place of another tool") {
                           friction + "\"\n");
         const Parts parts = scene("rubber\"\nfriction = 0.3\n", "pair\"\n");
         return told(read_scene(scratch.write("s.toml", parts.text()), {}, shipped()).mistakes,
-                    scratch.folder());
+                    scratch.path());
     };
     CHECK(told_with("0.2 + 0*one_x").find("5:12: warning: friction has no effect") !=
           std::string::npos);
@@ -182,7 +182,7 @@ TEST_CASE(
               .find("10:16: warning: crease_angle has no effect: the mesh file itself says which "
                     "edges are sharp") != std::string::npos);
     CHECK(mistakes_in(text).empty());  // no normals, and no solid
-    const Scratch scratch;
+    const SceneFolder scratch;
     const std::filesystem::path plain =
         scratch.write("tetrahedron.obj",
                       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
@@ -200,7 +200,8 @@ TEST_CASE("what a stage says in vain is told") {
          {"9:10: warning: remold has no effect in the first stage, whose matter has just been"}},
         {"a time of equilibria",
          of("bend\"\nduration = \"1 s\""),
-         {"9:12: warning: duration has no effect with solver = \"quasistatic\", except on the times"}},
+         {"9:12: warning: duration has no effect with solver = \"quasistatic\", except on the "
+          "times"}},
         {"no force",
          of("hold\"\n[[stage.load]]\nforce = [0, \"0 N\", 0]"),
          {"9:1: warning: load load_1 does nothing: its force is 0"}},

@@ -17,12 +17,12 @@ Parts limit(const std::string& lines, const std::string& machine = "bend",
 }  // namespace
 
 TEST_CASE("limits are read with part and amount, of force or torque") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     Parts parts = limit(
         "part = \"left\"\nforce = \"2 kN\"\n[[stage.limit]]\npart = \"right\"\n"
         "torque = \"500 N m\"\n");
     const SceneReading reading = read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.scene);
     const std::vector<LimitSpec>& limits = reading.scene->stage[0].machine.limit;
     REQUIRE(limits.size() == 2);
@@ -90,9 +90,9 @@ TEST_CASE("a load that goes by stop can be halted by a limit, on a machine that 
 }
 
 TEST_CASE("no blade stops, and no parameter is called stop") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const auto mistakes = [&](const std::string& text) {
-        return told(read_machine(scratch.write("m.toml", text)).mistakes, scratch.folder());
+        return told(read_machine(scratch.write("m.toml", text)).mistakes, scratch.path());
     };
     const std::string blade = "[[blade]]\nname = \"b\"\nedge = [[0, 0, 0], [0, 0, 1]]\n";
     CHECK(mistakes(blade + "[blade.motion]\nmove = [\"-min(t, stop)\", 0, 0]\n")

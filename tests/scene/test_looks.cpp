@@ -8,7 +8,7 @@ using namespace swage::test;
 
 TEST_CASE("a scene says where light comes from, what is behind and which edges are sharp") {
     const auto read = [](const std::string& rest) {
-        const Scratch scratch;
+        const SceneFolder scratch;
         const Parts parts = with(&Parts::rest, rest);
         SceneReading reading = read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
         REQUIRE(reading.scene);
@@ -30,7 +30,7 @@ TEST_CASE("a scene says where light comes from, what is behind and which edges a
 
 TEST_CASE("angles of the camera are open where the scene does not give them") {
     const auto open = [](const std::string& camera) {
-        const Scratch scratch;
+        const SceneFolder scratch;
         const Parts parts = with(&Parts::rest, "[render]\n" + camera + "\n");
         const SceneReading reading =
             read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
@@ -68,7 +68,7 @@ TEST_CASE("every shipped material has a look, metal where it is one") {
 }
 
 TEST_CASE("a scene's look goes over its material's, and a body has that of its own material") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("materials.toml",
                   "[goo]\nyoung_modulus = 1e5\ndensity = 900\n"
                   "look = {color = [1, 0.5, 0], roughness = 0.7, clear = 0.2}\n"
@@ -78,7 +78,7 @@ TEST_CASE("a scene's look goes over its material's, and a body has that of its o
         parts.rest += rest;
         const SceneReading reading =
             read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
-        INFO(told(reading.mistakes, scratch.folder()));
+        INFO(told(reading.mistakes, scratch.path()));
         REQUIRE(reading.scene);
         return reading.scene->body;
     };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/catalogue.h"
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -15,16 +15,16 @@ const std::string kGrip =
     "[[grip]]\nname = \"hold\"\nfrom = [0, 0, \"-reach\"]\nto = [1, 1, \"reach\"]\n";
 
 std::string mistakes_in(const std::string& text) {
-    const Scratch scratch;
+    const SceneFolder scratch;
     const MachineReading reading = read_machine(scratch.write("m.toml", text));
     CHECK(reading.machine.has_value() == (exit_code(reading.mistakes) == ExitCode::done));
-    return told(reading.mistakes, scratch.folder());
+    return told(reading.mistakes, scratch.path());
 }
 
 }  // namespace
 
 TEST_CASE("a machine file reads into its spec, numbers and expressions alike") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("tool.obj", "v 0 0 0\n");
     const auto file = scratch.write("mine.toml", R"toml(
 help = "a bit of each"
@@ -85,7 +85,7 @@ otherwise = "choose a smaller radius"
 )toml");
 
     const MachineReading reading = read_machine(file);
-    INFO(told(reading.mistakes, scratch.folder()));
+    INFO(told(reading.mistakes, scratch.path()));
     REQUIRE(reading.machine);
     CHECK(reading.mistakes.empty());
     const MachineSpec& machine = *reading.machine;
@@ -122,7 +122,7 @@ otherwise = "choose a smaller radius"
     CHECK(machine.tool[1].turn == "turned/2");
     CHECK(machine.tool[1].friction.empty());
     CHECK(machine.tool[2].radius == "0.5");
-    CHECK(machine.tool[3].mesh == scratch.folder() / "tool.obj");
+    CHECK(machine.tool[3].mesh == scratch.path() / "tool.obj");
     CHECK(machine.grip.at(0).to[0] == "roll_x");
     REQUIRE(machine.blade.size() == 1);
     CHECK(machine.blade[0].edge.size() == 3);
@@ -340,22 +340,22 @@ TEST_CASE("a part's name in escaped or many-lined text is still placed at its te
 }
 
 TEST_CASE("assets are found in the given folder first") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("machines/zzz.toml", kHead + kGrip);
     scratch.write("machines/readme.txt", "no machine");
-    const AssetPaths assets = find_assets(scratch.folder());
+    const AssetPaths assets = find_assets(scratch.path());
     REQUIRE_FALSE(assets.root.empty());
-    CHECK(assets.root[0] == std::filesystem::canonical(scratch.folder()));
-    const auto machines = known_machines({{scratch.folder()}});
+    CHECK(assets.root[0] == std::filesystem::canonical(scratch.path()));
+    const auto machines = known_machines({{scratch.path()}});
     REQUIRE(machines.size() == 1);
     CHECK(machines[0].name == "zzz");
-    CHECK(machines[0].file == scratch.folder() / "machines/zzz.toml");
-    CHECK_THROWS_AS(find_assets(scratch.folder() / "nowhere"), Error);
+    CHECK(machines[0].file == scratch.path() / "machines/zzz.toml");
+    CHECK_THROWS_AS(find_assets(scratch.path() / "nowhere"), Error);
 }
 
 TEST_CASE("a machine stands that gives none of its parts a motion") {
     const auto stands = [](const std::string& more) {
-        const Scratch scratch;
+        const SceneFolder scratch;
         const MachineReading reading = read_machine(scratch.write("m.toml", kHead + kGrip + more));
         REQUIRE(reading.machine);
         return reading.machine->stands();

@@ -17,13 +17,13 @@ const std::string kTurns =
     "motion = { turn = \"t*stop\", pivot = [\"roll_x\", \"roll_y\", \"roll_z\"] }\n";
 
 std::string mistakes_of(const std::string& text) {
-    const Scratch scratch;
-    return told(read_machine(scratch.write("m.toml", text)).mistakes, scratch.folder());
+    const SceneFolder scratch;
+    return told(read_machine(scratch.write("m.toml", text)).mistakes, scratch.path());
 }
 
 // The parts of the first stage, and what was wrong with it.
 std::pair<std::vector<std::string>, std::string> parts_with(const std::string& lines) {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("rolls.toml", kRolls + "repeat = \"rolls\"\n" + kAt + kTurns);
     Parts parts = with(&Parts::stage, "[[stage]]\nmachine = \"./rolls.toml\"\n" + lines);
     const SceneReading reading = read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
@@ -33,7 +33,7 @@ std::pair<std::vector<std::string>, std::string> parts_with(const std::string& l
             names.push_back(tool.name);
         }
     }
-    return {names, told(reading.mistakes, scratch.folder())};
+    return {names, told(reading.mistakes, scratch.path())};
 }
 
 }  // namespace

@@ -2,14 +2,14 @@
 #include "scene/document.h"
 #include "scene/read_scene.h"
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 
 using namespace swage;
 
 namespace {
 
 std::string told_of(const std::string& text) {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     const std::filesystem::path file = scratch.write("scene.toml", text);
     MistakeList mistakes;
     const std::optional<Document> document = read_document(file, file, mistakes);
@@ -20,7 +20,7 @@ std::string told_of(const std::string& text) {
 }
 
 std::string said_of_scene(const std::string& stage, const std::vector<std::string>& overrides) {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     const SceneReading reading =
         read_scene(scratch.write("scene.toml",
                                  "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"copper\"\n"
@@ -65,7 +65,7 @@ TEST_CASE("a quantity says the same in whatever unit, and where else it is set")
 }
 
 TEST_CASE("what is said is shown as it stands, and not at length") {
-    const test::Scratch scratch;
+    const test::SceneFolder scratch;
     MistakeList mistakes;
     const std::filesystem::path file =
         scratch.write("scene.toml", "a = \"4 cm\"\nb = [1, 2.5, \"x\"]\nc = true\nd = []\ne = \"" +

@@ -136,7 +136,7 @@ TEST_CASE("numbers that no scene can mean are refused where they stand, with the
 }
 
 TEST_CASE("a mesh of no kind that can be read is refused where it is named") {
-    const Scratch scratch;
+    const SceneFolder scratch;
     scratch.write("passwd", "root");
     scratch.write("machines/odd.toml",
                   "[[tool]]\nname = \"ram\"\nshape = \"mesh\"\nlength = 1\nat = [0, 0, 0]\n"
@@ -146,7 +146,7 @@ TEST_CASE("a mesh of no kind that can be read is refused where it is named") {
     parts.material += "[[inset]]\nname = \"lead\"\nfile = \"s.toml\"\n";
     parts.stage = "[[stage]]\nmachine = \"odd\"\n";
     const auto mistakes = read_scene(scratch.write("s.toml", parts.text()), {}, shipped()).mistakes;
-    const std::string text = told(mistakes, scratch.folder());
+    const std::string text = told(mistakes, scratch.path());
     INFO(text);
     CHECK(exit_code(mistakes) == ExitCode::mesh);
     CHECK(std::count(text.begin(), text.end(), '\n') == 3);

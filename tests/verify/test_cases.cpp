@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "tests/catch.h"
+#include "tests/shared/bytes_of.h"
 #include "verify/table.h"
 
 using namespace swage;
@@ -90,10 +89,7 @@ TEST_CASE("where an error is nothing no order is shown") {
 }
 
 TEST_CASE("the README's table has a row for every case, and the command writes such rows") {
-    std::ifstream file(std::string(SWAGE_SOURCE_DIR) + "/README.md");
-    std::stringstream text;
-    text << file.rdbuf();
-    const std::string whole = text.str();
+    const std::string whole = test::bytes_of(std::string(SWAGE_SOURCE_DIR) + "/README.md");
     const std::size_t section = whole.find("## How right it is");
     REQUIRE(section != std::string::npos);
     const std::string readme = whole.substr(section, whole.find("\n## ", section) - section);
