@@ -71,14 +71,14 @@ struct Simulation::Rooms {
     std::vector<WorkedBody> body;
     const Apparatus& apparatus;
     AnySolver solver;
-    std::vector<double> work, push_work;  // of each tool and grip, load and gravity, on all bodies
+    std::vector<double> work, load_work;  // of each tool and grip, load and gravity, on all bodies
     std::vector<long> severed;            // by each blade
 
     template <typename Io>
     void visit(Io& io) {
         std::visit([&](auto& any) { io(any); }, solver);
         for (WorkedBody& one : body) io(one);
-        io(work, push_work, severed);
+        io(work, load_work, severed);
     }
 
     const LoadSet& pushes(std::size_t b) const {
@@ -95,19 +95,19 @@ struct Simulation::Rooms {
         return crossed_connections(matter, swept_triangles(apparatus, way));
     }
 
-    std::vector<PushSum> push_sums(const Drive& now) const;
-    std::vector<ToolLoad> loads(const Drive& now, const std::vector<PushSum>& pushes) const;
+    std::vector<LoadSum> load_sums(const Drive& now) const;
+    std::vector<ToolLoad> loads(const Drive& now, const std::vector<LoadSum>& pushes) const;
     int cut(std::size_t b, const Drive& from, const Drive& to);
     void count_pieces(std::size_t b, const char* who, std::vector<std::string>& warning);
     void book(const MoveOutcome& outcome, FrameReport& report);
 };
 
 // Of all bodies together.
-std::vector<PushSum> Simulation::Rooms::push_sums(const Drive& now) const {
-    std::vector<PushSum> all = pushes(0).sums(*body[0].matter, now);
+std::vector<LoadSum> Simulation::Rooms::load_sums(const Drive& now) const {
+    std::vector<LoadSum> all = pushes(0).sums(*body[0].matter, now);
     double mass = body[0].matter->mass();
     for (std::size_t b = 1; b < body.size(); ++b) {
-        const std::vector<PushSum> more = pushes(b).sums(*body[b].matter, now);
+        const std::vector<LoadSum> more = pushes(b).sums(*body[b].matter, now);
         for (std::size_t n = 0; n < apparatus.load.size(); ++n) {
             if (apparatus.load[n].body == static_cast<int>(b)) all[n] = more[n];
         }
@@ -121,7 +121,7 @@ std::vector<PushSum> Simulation::Rooms::push_sums(const Drive& now) const {
 }
 
 std::vector<ToolLoad> Simulation::Rooms::loads(const Drive& now,
-                                               const std::vector<PushSum>& pushes) const {
+                                               const std::vector<LoadSum>& pushes) const {
     std::vector<ToolLoad> loads;
     const auto add = [&](const auto& parts, const std::vector<Pose>& pose) {
         for (std::size_t n = 0; n < parts.size(); ++n) {
@@ -134,7 +134,7 @@ std::vector<ToolLoad> Simulation::Rooms::loads(const Drive& now,
     add(apparatus.grip, now.world_from_grip);
     add(apparatus.blade, now.world_from_blade);
     std::vector<Pose> middle;
-    for (const PushSum& push : pushes) middle.push_back({Quat::Identity(), push.centre});
+    for (const LoadSum& push : pushes) middle.push_back({Quat::Identity(), push.centre});
     add(apparatus.load, middle);
     if (pushes.size() > apparatus.load.size()) {
         loads.emplace_back();
@@ -191,9 +191,9 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
         books.drag += part.drag_work;
         books.set_free += part.set_free;
         for (double done : part.work) books.work += done;
-        for (std::size_t n = 0; n < part.push_work.size(); ++n) {
+        for (std::size_t n = 0; n < part.load_work.size(); ++n) {
             const bool gravity = n == apparatus.load.size();
-            (gravity ? books.gravity_work : books.load_work) += part.push_work[n];
+            (gravity ? books.gravity_work : books.load_work) += part.load_work[n];
         }
         // Half of what a contact holds and takes is on its books; the rest of its work is passed
         // on.
@@ -233,7 +233,7 @@ Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& a
         rooms_->body.push_back({&matter, pieces.count, particles_in_crumbs(pieces)});
     }
     rooms_->work.assign(apparatus.tool.size() + apparatus.grip.size(), 0.0);
-    rooms_->push_work.assign(rooms_->pushes(0).count(), 0.0);
+    rooms_->load_work.assign(rooms_->pushes(0).count(), 0.0);
     rooms_->severed.assign(apparatus.blade.size(), 0);
 }
 
@@ -257,7 +257,7 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
 }
 
 std::vector<ToolLoad> Simulation::loads(const Drive& now) const {
-    return rooms_->loads(now, rooms_->push_sums(now));
+    return rooms_->loads(now, rooms_->load_sums(now));
 }
 
 FrameReport Simulation::start() const {
@@ -328,17 +328,17 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveA
     }
 
     r.book(outcome, report);
-    const std::vector<PushSum> pushes = r.push_sums(end);
+    const std::vector<LoadSum> pushes = r.load_sums(end);
     report.load = r.loads(end, pushes);
     for (std::size_t n = 0; n < r.work.size(); ++n) {
         ToolLoad& load = report.load[n];
         for (const BodyOutcome& body : outcome.body) {
             r.work[n] += body.work[n];
-            load.force += body.load[n].force;
-            load.torque += body.load[n].torque;
-            load.penetration = std::max(load.penetration, body.load[n].penetration);
-            load.contacts += body.load[n].contacts;
-            load.touched = load.touched || body.touched[n] || body.load[n].contacts > 0;
+            load.force += body.part[n].force;
+            load.torque += body.part[n].torque;
+            load.penetration = std::max(load.penetration, body.part[n].penetration);
+            load.contacts += body.part[n].contacts;
+            load.touched = load.touched || body.touched[n] || body.part[n].contacts > 0;
         }
         load.work = r.work[n];
     }
@@ -347,11 +347,11 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveA
     }
     const std::size_t first = report.load.size() - pushes.size();
     for (std::size_t n = 0; n < pushes.size(); ++n) {
-        for (const BodyOutcome& body : outcome.body) r.push_work[n] += body.push_work[n];
+        for (const BodyOutcome& body : outcome.body) r.load_work[n] += body.load_work[n];
         ToolLoad& load = report.load[first + n];
         load.force = pushes[n].force;
         load.torque = pushes[n].torque;
-        load.work = r.push_work[n];
+        load.work = r.load_work[n];
         if (n < r.apparatus.load.size()) {
             load.contacts = static_cast<int>(r.apparatus.load[n].point.size());
         }

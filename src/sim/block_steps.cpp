@@ -199,7 +199,7 @@ bool BlockSolver::energy_holds(const Block& block, const std::vector<Stored>& be
     double turned = 0, done = 0, lost = 0, gain = 0;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         turned += turned_over(so_far[b].work, now[b].work) +
-                  turned_over(so_far[b].push_work, now[b].push_work);
+                  turned_over(so_far[b].load_work, now[b].load_work);
         done += now[b].done() - so_far[b].done();
         lost += now[b].lost_since(so_far[b]);
         gain += after[b].sum() - before[b].sum();
@@ -299,7 +299,7 @@ MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
         }
     }
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        outcome.body[b].load = bodies_[b].load();
+        outcome.body[b].part = bodies_[b].load();
         outcome.asleep += bodies_.is_asleep(b);
     }
     return outcome;

@@ -81,7 +81,7 @@ bool SlipWatch::draws_back(const DriveMotion& motion) const {
     return false;
 }
 
-void SlipWatch::keep(const std::vector<LoadSum>& load, const std::vector<double>& work,
+void SlipWatch::keep(const std::vector<PartSum>& load, const std::vector<double>& work,
                      const DriveMotion& motion, bool may_part, std::vector<std::string>& lost) {
     for (std::size_t t = 0; t < tool_.size(); ++t) {
         Bearing& tool = tool_[t];

@@ -50,7 +50,7 @@ class SlipWatch {
     bool draws_back(const DriveMotion& motion) const;
     // A move is kept: what tools bear at its end, and the work that each did in it [J]. A tool that
     // loses its load has lost the work-piece, unless `may_part`: it is added to `lost`.
-    void keep(const std::vector<LoadSum>& load, const std::vector<double>& work,
+    void keep(const std::vector<PartSum>& load, const std::vector<double>& work,
               const DriveMotion& motion, bool may_part, std::vector<std::string>& lost);
     // Any of them may have lost its load.
     void forget();

@@ -343,7 +343,7 @@ MoveOutcome EnergySteps::advance(const Drive& from, const Drive& to) {
     outcome.shortest_step = to.time - from.time;
     for (std::size_t b = 0; b < mover_.size(); ++b) mover_[b].body.start(from, outcome.body[b]);
     for (const Group& group : groups(from, to)) advance(group, from, to, outcome);
-    for (std::size_t b = 0; b < mover_.size(); ++b) outcome.body[b].load = mover_[b].body.load();
+    for (std::size_t b = 0; b < mover_.size(); ++b) outcome.body[b].part = mover_[b].body.load();
     return outcome;
 }
 

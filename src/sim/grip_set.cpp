@@ -92,7 +92,7 @@ void GripSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& f
 }
 
 void GripSet::add_loads(const Aggregate& matter, const Drive& now, std::size_t first,
-                        std::vector<LoadSum>& sums) const {
+                        std::vector<PartSum>& sums) const {
     for_each_point(matter, now, [&](std::size_t g, int, const Vec3& x, const Vec3& f, double) {
         sums[first + g].add(x - now.world_from_grip[g].translation, f);
     });
@@ -107,7 +107,7 @@ double GripSet::stored_energy(const Aggregate& matter, const Drive& now) const {
 }
 
 double GripSet::add_all(const Aggregate& matter, const Drive& now, Vec3Array& force,
-                        std::size_t first, std::vector<LoadSum>& sums) const {
+                        std::size_t first, std::vector<PartSum>& sums) const {
     double stored = 0;
     for_each_point(matter, now,
                    [&](std::size_t g, int point, const Vec3& x, const Vec3& f, double k) {

@@ -14,7 +14,7 @@
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/held_point.h"
-#include "sim/load_sum.h"
+#include "sim/part_sum.h"
 #include "sim/settings.h"
 #include "sim/surface_modulus.h"
 
@@ -43,14 +43,14 @@ class GripSet {
     void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const;
     // Sums by grip, for grip g at sums[first + g].
     void add_loads(const Aggregate& matter, const Drive& now, std::size_t first,
-                   std::vector<LoadSum>& sums) const;
+                   std::vector<PartSum>& sums) const;
 
     // In the springs [J].
     double stored_energy(const Aggregate& matter, const Drive& now) const;
 
     // All three; returns the energy.
     double add_all(const Aggregate& matter, const Drive& now, Vec3Array& force, std::size_t first,
-                   std::vector<LoadSum>& sums) const;
+                   std::vector<PartSum>& sums) const;
 
     // The farthest that any point's place moves [m].
     double travel(const Drive& from, const Drive& to) const;

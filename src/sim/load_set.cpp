@@ -27,9 +27,9 @@ Vec3 centre_of(const std::vector<double>& area, const std::vector<Vec3>& positio
     return all > 0 ? Vec3(sum / all) : sum;
 }
 
-PushSum sum_of(const std::vector<double>& area, const std::vector<Vec3>& position,
+LoadSum sum_of(const std::vector<double>& area, const std::vector<Vec3>& position,
                const std::vector<Vec3>& force) {
-    PushSum sum;
+    LoadSum sum;
     sum.centre = centre_of(area, position);
     for (std::size_t n = 0; n < area.size(); ++n) {
         sum.force += force[n];
@@ -41,7 +41,7 @@ PushSum sum_of(const std::vector<double>& area, const std::vector<Vec3>& positio
 // Takes the sum and the torque off, evenly by area, and by a turn.
 void balance(const std::vector<double>& area, const std::vector<Vec3>& position,
              std::vector<Vec3>& force) {
-    const PushSum sum = sum_of(area, position, force);
+    const LoadSum sum = sum_of(area, position, force);
     double all = 0;
     Mat3 inertia = Mat3::Zero();
     for (std::size_t n = 0; n < area.size(); ++n) {
@@ -329,8 +329,8 @@ void LoadSet::commit(const Aggregate& matter, const Drive& now, std::vector<doub
     last_ = std::move(state);
 }
 
-std::vector<PushSum> LoadSet::sums(const Aggregate& matter, const Drive& now) const {
-    std::vector<PushSum> sums(apparatus_->load.size());
+std::vector<LoadSum> LoadSet::sums(const Aggregate& matter, const Drive& now) const {
+    std::vector<LoadSum> sums(apparatus_->load.size());
     for_each_load([&](std::size_t l, const Load& load) {
         std::vector<double> area = areas_of(load, matter);
         std::vector<Vec3> position = positions_of(load, matter),

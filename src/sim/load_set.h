@@ -17,7 +17,7 @@
 
 namespace swage {
 
-struct PushSum {
+struct LoadSum {
     Vec3 centre = Vec3::Zero();  // of the loaded area, or of mass [m]
     Vec3 force = Vec3::Zero();   // [N]
     Vec3 torque = Vec3::Zero();  // about the centre [N m]
@@ -64,7 +64,7 @@ class LoadSet {
     void commit(const Aggregate& matter, const Drive& now, std::vector<double>& work);
 
     // By load, then gravity where there is any, of what is pushed; zero for loads on another body.
-    std::vector<PushSum> sums(const Aggregate& matter, const Drive& now) const;
+    std::vector<LoadSum> sums(const Aggregate& matter, const Drive& now) const;
     std::size_t count() const { return apparatus_->load.size() + has_gravity(); }
 
     template <typename Io>

@@ -3,8 +3,8 @@
 
 namespace swage {
 
-void add_work(const Drive& from, const Drive& to, const std::vector<LoadSum>& before,
-              const std::vector<LoadSum>& after, std::vector<double>& work) {
+void add_work(const Drive& from, const Drive& to, const std::vector<PartSum>& before,
+              const std::vector<PartSum>& after, std::vector<double>& work) {
     const std::size_t tools = from.world_from_tool.size();
     for (std::size_t n = 0; n < work.size(); ++n) {
         const Pose& a = n < tools ? from.world_from_tool[n] : from.world_from_grip[n - tools];

@@ -10,7 +10,7 @@
 
 #include "matter/drive.h"
 #include "sim/contact_sums.h"
-#include "sim/load_sum.h"
+#include "sim/part_sum.h"
 #include "sim/step_counts.h"
 
 namespace swage {
@@ -38,19 +38,19 @@ struct BodyOutcome {
     bool drag_bounded = false;      // was more than a step can follow
     std::vector<double> work;       // by tool, then grip [J]
     std::vector<char> touched;      // likewise: at the end of any step; in motion only
-    std::vector<double> push_work;  // by load, then gravity [J]
-    std::vector<LoadSum> load;      // at the end, by tool, then grip
+    std::vector<double> load_work;  // by load, then gravity [J]
+    std::vector<PartSum> part;      // at the end, by tool, then grip
     ContactSums by_contact;         // with other bodies and itself
 
-    BodyOutcome(const Apparatus& apparatus, std::size_t pushes)
+    BodyOutcome(const Apparatus& apparatus, std::size_t loads)
         : work(apparatus.tool.size() + apparatus.grip.size(), 0.0),
           touched(work.size(), 0),
-          push_work(pushes, 0.0) {}
+          load_work(loads, 0.0) {}
 
     // On the body by tools, grips, loads and gravity [J].
     double done() const {
         return std::accumulate(work.begin(), work.end(), 0.0) +
-               std::accumulate(push_work.begin(), push_work.end(), 0.0);
+               std::accumulate(load_work.begin(), load_work.end(), 0.0);
     }
     double lost() const {  // [J]
         return plastic_work + fracture_work + friction_work + damped_work + drag_work +
@@ -76,7 +76,7 @@ struct MoveOutcome : StepCounts {
 
 // Work [J] that each tool and grip did while its pose went from one to another under these loads
 // before and after: the trapezoid rule on force and torque of the pose's origin.
-void add_work(const Drive& from, const Drive& to, const std::vector<LoadSum>& before,
-              const std::vector<LoadSum>& after, std::vector<double>& work);
+void add_work(const Drive& from, const Drive& to, const std::vector<PartSum>& before,
+              const std::vector<PartSum>& after, std::vector<double>& work);
 
 }  // namespace swage

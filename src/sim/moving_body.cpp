@@ -260,11 +260,11 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
         outcome.damped_work += taken.damped;
         outcome.friction_work += taken.friction;
     }
-    std::vector<LoadSum> load =
+    std::vector<PartSum> load =
         implicit_ ? contacts_.at_rest().loads(matter_, now) : contacts_.loads();
     add_work(before, now, load_, load, outcome.work);
     for (std::size_t n = 0; n < load.size(); ++n) outcome.touched[n] |= load[n].contacts > 0;
-    pushes_.commit(matter_, now, outcome.push_work);
+    pushes_.commit(matter_, now, outcome.load_work);
     load_ = std::move(load);
 }
 

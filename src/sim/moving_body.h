@@ -117,7 +117,7 @@ class MovingBody {
         gravity_ = gravity;
     }
     const LoadSet& pushes() const { return pushes_; }
-    const std::vector<LoadSum>& load() const { return load_; }  // by tool, then grip
+    const std::vector<PartSum>& load() const { return load_; }  // by tool, then grip
     bool drags() const { return drag_.acts(); }  // a medium does, which implicit steps have none of
 
     // All that a step changes.
@@ -127,7 +127,7 @@ class MovingBody {
         std::optional<LoadSet> pushes;
         std::optional<InternalDamping> damping;  // none, nor memory: no copy is kept
         std::vector<BranchMemory> memory;
-        std::vector<LoadSum> load;
+        std::vector<PartSum> load;
         double gone, turned;
     };
     void save(State& state) const;
@@ -162,7 +162,7 @@ class MovingBody {
     bool flowed_ = false;  // since present_step_ was found
     SurfaceDrag drag_;
     Vec3Array force_;
-    std::vector<LoadSum> load_;
+    std::vector<PartSum> load_;
     double turned_ = 0;      // way gone since the last look at what is bent, at the most [m]
     double gone_ = 0;        // no particle has gone farther since candidates were found [m]
     bool touches_;           // a tool could

@@ -250,7 +250,7 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
         next.history = f.history;
         next.anchor = pose.inverse() * (m.place + f.reach);
         stored_ += f.stored;
-        LoadSum& sum = load_[pair.tool];
+        PartSum& sum = load_[pair.tool];
         sum.add(m.place - pose.translation, f.force);
         sum.penetration = std::max(sum.penetration, m.depth);
         sum.sliding += f.history.slides;

@@ -49,7 +49,7 @@ class MovingContacts {
     void add_forces(const Aggregate& matter, const Drive& now, double step, const Vec3& gravity,
                     Vec3Array& force);
     // Of these: by tool, then by grip; and the energy in springs [J].
-    const std::vector<LoadSum>& loads() const { return load_; }
+    const std::vector<PartSum>& loads() const { return load_; }
     double stored_energy() const { return stored_; }
     // The step is kept: remembers where each point sticks and how it met its tool. Returns what
     // dashpots and friction took in it.
@@ -104,7 +104,7 @@ class MovingContacts {
     // Of each particle, what points that touch have of stiffness on it [N/m]; 0 between.
     std::vector<double> bears_;
     std::vector<double> met_speed_;  // likewise, at which those that do not rest were met [m/s]
-    std::vector<LoadSum> load_;
+    std::vector<PartSum> load_;
     double stored_ = 0;
 };
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "sim/load_sum.h"
+#include "sim/part_sum.h"
 
 namespace swage {
 
@@ -32,7 +32,7 @@ class PushMeasure {
         const double asked = std::max(asked_, asking);
         if (!driven_ && asked > 0) return std::max(asked, eased_);
         double most = std::max({asked > 0 ? asked : least_, carried_, eased_});
-        for (const LoadSum& load : carrying()) most = std::max(most, load.size);
+        for (const PartSum& load : carrying()) most = std::max(most, load.size);
         return most;
     }
 

@@ -100,7 +100,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to, const
         }
         before = after;
     }
-    body.load = load_;
+    body.part = load_;
     body.after = forces_.stored(outcome.stop ? outcome.stop->at : to);
     return outcome;
 }
@@ -190,7 +190,7 @@ bool QuasistaticSolver::take_back(Relaxation& tried, const StaticMove& move, Mov
 // soon reached and stays does up to twice as much.
 double QuasistaticSolver::share_to_yield(const StaticMove& move) {
     if (!matter_.yields() || splits_ == kMostSplits) return 1;
-    const std::vector<LoadSum> load = forces_.contacts.loads(matter_, move.to);
+    const std::vector<PartSum> load = forces_.contacts.loads(matter_, move.to);
     double before = 0, after = 0;
     for (std::size_t n = 0; n < load.size(); ++n) {
         before += load_[n].size;
@@ -216,15 +216,15 @@ void QuasistaticSolver::keep(const StaticMove& move, bool buckled, MoveOutcome& 
     const RestingContacts::Stroke stroke = forces_.contacts.stroke(matter_, move.from, move.to);
     body.friction_work += stroke.friction;
     forces_.contacts.commit(matter_, move.to);
-    std::vector<LoadSum> load = forces_.contacts.loads(matter_, move.to);
+    std::vector<PartSum> load = forces_.contacts.loads(matter_, move.to);
     std::vector<double> work(load_.size(), 0.0);
     add_work(move.from, move.to, load_, load, work);
     // It judges what the trapezoid rule says.
     slips_.keep(load, work, move.motion, move.released || breaks, outcome.lost);
-    std::vector<double> pushed(body.push_work.size(), 0.0);
+    std::vector<double> pushed(body.load_work.size(), 0.0);
     forces_.pushes.commit(matter_, move.to, pushed);
     take_idle(stroke.idle, pushed, work);
-    for (std::size_t n = 0; n < pushed.size(); ++n) body.push_work[n] += pushed[n];
+    for (std::size_t n = 0; n < pushed.size(); ++n) body.load_work[n] += pushed[n];
     for (std::size_t n = 0; n < work.size(); ++n) {
         body.work[n] += work[n];
         forces_.measure.carry(load[n].size);

@@ -73,8 +73,8 @@ class QuasistaticSolver {
         double share = 0;
     };
     bool is_limited() const { return !apparatus_.limit.empty() && !has_stopped_; }
-    double borne_of(std::size_t limit, const std::vector<LoadSum>& load, const Drive& now) const;
-    Reach reach_of(const std::vector<LoadSum>& load, const Drive& now) const;
+    double borne_of(std::size_t limit, const std::vector<PartSum>& load, const Drive& now) const;
+    Reach reach_of(const std::vector<PartSum>& load, const Drive& now) const;
     bool goes_beyond(const StaticMove& move);
     void approach(MoveOutcome& outcome);
     void come_to_stop(MoveOutcome& outcome);
@@ -90,7 +90,7 @@ class QuasistaticSolver {
     EquilibriumSearch search_;
     Foresight foresight_;
     SlipWatch slips_;
-    std::vector<LoadSum> load_;  // at the end of the last increment, by tool, then grip
+    std::vector<PartSum> load_;  // at the end of the last increment, by tool, then grip
     int splits_ = 0;             // of the present move, for yield
     bool seats_ = true;          // until a piece finds no seat, in this advance
     bool begun_ = false;

@@ -15,7 +15,7 @@ constexpr double kRoundOff = 1e-20;  // of E a^3: what a body at rest holds
 // by what is set free.
 double QuasistaticSolver::booked(const Drive& now, const BodyOutcome& outcome) {
     double pushed = 0;
-    for (double work : outcome.push_work) pushed += work;
+    for (double work : outcome.load_work) pushed += work;
     return elastic_energy() + forces_.contacts.stored_energy(matter_, now) +
            forces_.self.sums().stored + outcome.lost() - pushed;
 }

@@ -75,7 +75,7 @@ void QuasistaticSolver::stay(const StaticMove& move) {
     }
     const auto is_free = [&] {
         contacts.find_candidates(matter_, to);
-        for (const LoadSum& load : contacts.loads(matter_, to)) {
+        for (const PartSum& load : contacts.loads(matter_, to)) {
             if (load.size > 0) return false;
         }
         return true;

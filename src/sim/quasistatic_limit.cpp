@@ -24,14 +24,14 @@ Drive QuasistaticSolver::between(const Drive& from, const Drive& to, double s) c
                            : drive_between(from, to, s);
 }
 
-double QuasistaticSolver::borne_of(std::size_t number, const std::vector<LoadSum>& load,
+double QuasistaticSolver::borne_of(std::size_t number, const std::vector<PartSum>& load,
                                    const Drive& now) const {
     const LoadLimit& limit = apparatus_.limit[number];
     return limit.borne(load[limit.part].force, load[limit.part].torque,
                        pose_of(now, limit.part, apparatus_.tool.size()));
 }
 
-QuasistaticSolver::Reach QuasistaticSolver::reach_of(const std::vector<LoadSum>& load,
+QuasistaticSolver::Reach QuasistaticSolver::reach_of(const std::vector<PartSum>& load,
                                                      const Drive& now) const {
     Reach most;
     for (std::size_t l = 0; l < apparatus_.limit.size(); ++l) {

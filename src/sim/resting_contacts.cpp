@@ -125,11 +125,11 @@ void RestingContacts::add_forces(const Aggregate& matter, const Drive& now, Vec3
     grips_.add_forces(matter, now, force);
 }
 
-std::vector<LoadSum> RestingContacts::loads(const Aggregate& matter, const Drive& now) const {
-    std::vector<LoadSum> sums(apparatus_->tool.size() + apparatus_->grip.size());
+std::vector<PartSum> RestingContacts::loads(const Aggregate& matter, const Drive& now) const {
+    std::vector<PartSum> sums(apparatus_->tool.size() + apparatus_->grip.size());
     for_each_touch(matter, now, [&](const TouchNow& t) {
         const int tool = pairs_[t.pair].tool;
-        LoadSum& sum = sums[tool];
+        PartSum& sum = sums[tool];
         const Vec3 arm = t.place - now.world_from_tool[tool].translation;
         sum.add(arm, t.contact.force);
         sum.penetration = std::max(sum.penetration, -t.distance.value);

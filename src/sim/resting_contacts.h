@@ -12,7 +12,7 @@
 #include "matter/drive.h"
 #include "sim/grip_set.h"
 #include "sim/held_point.h"
-#include "sim/load_sum.h"
+#include "sim/part_sum.h"
 #include "sim/settings.h"
 #include "sim/tool_pairs.h"
 
@@ -47,7 +47,7 @@ class RestingContacts {
                     double moved = ToolPairs::kAnywhere) const;
 
     // Sums by tool, then by grip, for the present state; zero for grips that hold another body.
-    std::vector<LoadSum> loads(const Aggregate& matter, const Drive& now) const;
+    std::vector<PartSum> loads(const Aggregate& matter, const Drive& now) const;
 
     // In the springs of touching and gripped points [J].
     double stored_energy(const Aggregate& matter, const Drive& now) const;

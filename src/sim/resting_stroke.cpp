@@ -3,7 +3,8 @@
 // trapezoid rule (add_work()) has it that the force of a tool changes evenly over all of the way.
 // Where points come and leave it does not: as a plate rises from what springs back they leave it
 // one by one, and most of its force is gone long before the last of them. But whatever the order,
-// matter that is elastic and linear gets from forces f that grow from f_0 to f_1 at points that move by u
+// matter that is elastic and linear gets from forces f that grow from f_0 to f_1 at points that
+// move by u
 //
 //     W = 1/2 sum (f_0 + f_1) . u
 //
@@ -196,7 +197,7 @@ RestingContacts::Stroke RestingContacts::stroke(const Aggregate& matter, const D
 double RestingContacts::air(const Aggregate& matter, const Drive& from, const Drive& to) const {
     std::vector<char> touched(apparatus_->tool.size(), 0), touching(touched);
     for (const ToolPairs::Pair& pair : pairs_) touched[pair.tool] |= char(pair.stuck && !pair.gone);
-    const std::vector<LoadSum> load = loads(matter, to);
+    const std::vector<PartSum> load = loads(matter, to);
     for (std::size_t t = 0; t < touching.size(); ++t) touching[t] = load[t].contacts > 0;
     double sum = 0;
     for (const Way& way : ways_of(pairs_, matter, from, to)) {

@@ -18,7 +18,7 @@ TEST_CASE("pressure all round a body neither pushes nor turns it, however it is 
         const LoadSet loads(apparatus, {});
         const Drive now = drive_of(apparatus, 1, 1);
         const double size = loads.size(matter, now);
-        const PushSum sum = loads.sums(matter, now).at(0);
+        const LoadSum sum = loads.sums(matter, now).at(0);
         CHECK(sum.force.norm() < 1e-14 * size);
         CHECK(sum.torque.norm() < 1e-14 * size);
         Vec3Array force;
@@ -147,7 +147,7 @@ TEST_CASE("pressure follows the surface as the body turns") {
     const LoadSet loads(apparatus, {});
     const Eigen::AngleAxisd turn(2, Vec3(1, 2, 3).normalized());
     deform(matter, [&](const Vec3& x) { return Vec3(turn * Vec3(2 * x.x(), x.y(), x.z())); });
-    const PushSum sum = loads.sums(matter, drive_of(apparatus, 1, 0.5)).at(0);
+    const LoadSum sum = loads.sums(matter, drive_of(apparatus, 1, 0.5)).at(0);
     CHECK((sum.force - turn * Vec3(0, 0, -0.5 * 1e5 * 0.18)).norm() < 1e-6);
 }
 

@@ -6,8 +6,8 @@
 namespace swage {
 
 // Sums over one tool or grip; forces are those it exerts on the matter.
-struct LoadSum {
-    using IsPlain = LoadSum;
+struct PartSum {
+    using IsPlain = PartSum;
     Vec3 force = Vec3::Zero();   // [N]
     Vec3 torque = Vec3::Zero();  // about the origin of its pose [N m]
     double size = 0;             // sum of the points' force magnitudes [N]
