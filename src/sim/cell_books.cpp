@@ -205,10 +205,10 @@ double CellSweep::sum_of_runs(const Aggregate& matter, const SlabRuns* of, const
     });
 }
 
-double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) const {
+double CellSweep::commit(Aggregate& matter, Forces found, SlabGrowths* growths) const {
     if (!yields_) return 0;
     if (growths) growths->resize(slab_.size() + 1);
-    const SlabRuns* const of = seen ? &yielding_ : nullptr;
+    const SlabRuns* const of = found == Forces::fresh ? &yielding_ : nullptr;
     RestGrowths* const mixed_growths = growths ? &growths->back() : nullptr;
     const auto sum = [&](Aggregate* flows) {
         return sum_of_runs(matter, of, [&](BookTask& task, std::size_t slab) {
@@ -223,7 +223,7 @@ double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) con
         });
     };
     if (matter.cell_history.empty()) {
-        if (sum(nullptr) == 0) return mixed_.commit(matter, law_, seen, mixed_growths);
+        if (sum(nullptr) == 0) return mixed_.commit(matter, law_, found, mixed_growths);
         matter.cell_history.assign(fill_.size());
     }
     const bool shifts = std::any_of(law_.begin(), law_.end(), [](const MaterialLaw& law) {
@@ -231,7 +231,7 @@ double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) con
     });
     if (shifts && matter.cell_back.empty()) matter.cell_back.assign(fill_.size());
     const double lost = sum(&matter);
-    return lost + mixed_.commit(matter, law_, seen, mixed_growths);
+    return lost + mixed_.commit(matter, law_, found, mixed_growths);
 }
 
 double CellSweep::energy_of(const Aggregate& matter, const CellRun& run, int n) const {

@@ -212,9 +212,9 @@ double CellFlow::taken_in(double step, const Aggregate& matter) const {
     return sum;
 }
 
-double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
+double CellFlow::commit(Aggregate& matter, Forces found, RestGrowths* growths) {
     if (!(yield_distortion_ > 0)) return 0;
-    if (!found) rest_strains(matter);
+    if (found == Forces::stale) rest_strains(matter);
     if (flowing_.empty()) {
         taken_.reset();
         return 0;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/flow.h"
 #include "sim/flowing_cells.h"
 
 namespace swage {
@@ -20,9 +21,9 @@ class CellFlow {
     // Whether any cell flowed in that call.
     bool flows() const { return !flowing_.empty(); }
 
-    // Remembers the flow of a converged state; returns the work that it took [J]. `found`:
-    // rest_strains() was last called at these positions. Adds to `growths`, where it is asked for.
-    double commit(Aggregate& matter, bool found = false, RestGrowths* growths = nullptr);
+    // Remembers the flow of a converged state; returns the work that it took [J]. `found`: by
+    // rest_strains(). Adds to `growths`, where it is asked for.
+    double commit(Aggregate& matter, Forces found = Forces::stale, RestGrowths* growths = nullptr);
 
     // In motion, where rest_strains() was just called, by the velocities that led there from a step
     // before: what the next commit() returns.

@@ -34,9 +34,9 @@ class CellSweep {
     // force = sum of the cells' forces on each particle [N].
     void forces(const Aggregate& matter, Flow flow, Vec3Array& force);
 
-    // Remembers the flow of a converged state; returns the work that it took [J]. `seen`: the last
-    // sweep was at these positions, with what flows. Adds to `growths`, where it is asked for.
-    double commit(Aggregate& matter, bool seen = false, SlabGrowths* growths = nullptr) const;
+    // Remembers the flow of a converged state; returns the work that it took [J]. Adds to
+    // `growths`, where it is asked for.
+    double commit(Aggregate& matter, Forces found, SlabGrowths* growths) const;
 
     double elastic_energy(const Aggregate& matter) const;  // [J]
 

@@ -28,14 +28,6 @@ void for_each_particle(std::size_t count, const Act& act) {
     });
 }
 
-double largest_ratio(const std::vector<double>& bound, const Aggregate& matter) {
-    double highest = 0;
-    for (std::size_t p = 0; p < bound.size(); ++p) {
-        highest = std::max(highest, bound[p] / matter.particle_mass[p]);
-    }
-    return highest;
-}
-
 Aggregate as_molded(Aggregate matter) {
     matter.particle_position = matter.particle_reference.all();
     matter.material.yield_stress = std::numeric_limits<double>::infinity();
@@ -49,6 +41,14 @@ Aggregate as_molded(Aggregate matter) {
 }
 
 }  // namespace
+
+double most_per_mass(const std::vector<double>& stiffness, const Aggregate& matter) {
+    double most = 0;
+    for (std::size_t p = 0; p < stiffness.size(); ++p) {
+        most = std::max(most, stiffness[p] / matter.particle_mass[p]);
+    }
+    return most;
+}
 
 double fastest_swing_squared(const Aggregate& of) {
     Aggregate matter = as_molded(of);
@@ -101,8 +101,7 @@ double fastest_swing_squared(const Aggregate& of) {
 SwingBound::SwingBound(const Aggregate& matter, bool parts)
     : found_(kRoom * fastest_swing_squared(matter)) {
     if (parts) {
-        const std::vector<double> springs = stiffness_bound(matter);
-        found_ = std::max(found_, largest_ratio(springs, matter));
+        found_ = std::max(found_, most_per_mass(stiffness_bound(matter), matter));
     }
     if (!matter.yields()) return;
     const Aggregate molded = as_molded(matter);
@@ -116,7 +115,7 @@ double SwingBound::squared(const Aggregate& matter, const LatticeForces& lattice
     for (std::size_t p = 0; p < molded_.size(); ++p) {
         if (molded_[p] > 0) stiffer = std::max(stiffer, bound[p] / molded_[p]);
     }
-    return std::min(largest_ratio(bound, matter), stiffer * found_);
+    return std::min(most_per_mass(bound, matter), stiffer * found_);
 }
 
 }  // namespace swage

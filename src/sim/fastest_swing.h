@@ -13,6 +13,10 @@ namespace swage {
 // 2 times as much where all cells are whole, and 5 to 20 times where the surface runs through them.
 double fastest_swing_squared(const Aggregate& matter);
 
+// The largest of the particles' stiffnesses over their masses [1/s2]: no swing's frequency squared
+// is more, where they bound it.
+double most_per_mass(const std::vector<double>& stiffness, const Aggregate& matter);
+
 // What the matter's swings stay under, however it is strained within reason.
 class SwingBound {
   public:

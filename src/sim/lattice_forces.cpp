@@ -21,8 +21,8 @@ constexpr double kMostBent = 3;
 
 }  // namespace
 
-LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
-    : in_motion_(in_motion), loose_(matter) {
+LatticeForces::LatticeForces(const Aggregate& matter, Excess excess)
+    : excess_(excess), loose_(matter) {
     const bool springs = matter.material.mechanics == Mechanics::springs;
     if (springs) spring_sweep_ = std::make_unique<LatticeSweep>(matter);
     if (!springs) cells_ = std::make_unique<CellSweep>(matter);
@@ -37,7 +37,7 @@ LatticeForces::LatticeForces(LatticeForces&&) noexcept = default;
 LatticeForces::~LatticeForces() = default;
 
 void LatticeForces::connections_changed(Aggregate& matter, bool severed) {
-    const bool in_excess = in_motion_ && matter.breaks();
+    const bool in_excess = excess_ == Excess::lives_on && matter.breaks();
     const bool at_rest = severed && matter.has_flowed();
     std::vector<TurnedCell> turned, flowed;
     if (cells_) cells_->cells_changed(matter, in_excess || at_rest ? &turned : nullptr);
@@ -130,16 +130,14 @@ void LatticeForces::book_flow(const Aggregate& matter, double step) {
     if (spring_flow_) spring_flow_->book(matter, step);
 }
 
-Committed LatticeForces::commit(Aggregate& matter, bool in_motion, SlabGrowths* growths) {
+Committed LatticeForces::commit(Aggregate& matter, Forces found, SlabGrowths* growths) {
     Committed result;
     if (growths) growths->resize(std::max<std::size_t>(1, growths->size()));
-    if (cells_) result.plastic = cells_->commit(matter, in_motion, growths);
+    if (cells_) result.plastic = cells_->commit(matter, found, growths);
     if (spring_flow_) {
-        result.plastic =
-            spring_flow_->commit(matter, in_motion, growths ? &growths->back() : nullptr);
+        result.plastic = spring_flow_->commit(matter, found, growths ? &growths->back() : nullptr);
     }
-    // In motion it is committed where forces were just found.
-    if (!in_motion || spring_flow_) loose_.find_strains(matter, nullptr);
+    if (found == Forces::stale || spring_flow_) loose_.find_strains(matter, nullptr);
     const Broken broken = loose_.commit(matter);
     result.fracture = broken.lost;
     result.broken = broken.count;
@@ -155,21 +153,22 @@ Committed LatticeForces::commit(Aggregate& matter, bool in_motion, SlabGrowths* 
     return result;
 }
 
-Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
+Cracked LatticeForces::crack(Aggregate& matter, Forces found) {
     if (!matter.breaks()) return {};
+    const bool is_seen = found == Forces::fresh;
     std::vector<const CellRun*> runs;
-    if (in_motion && cells_) {
+    if (is_seen && cells_) {
         for (const auto& part : cells_->strained_runs()) {
             runs.insert(runs.end(), part.begin(), part.end());
         }
-    } else if (in_motion) {
+    } else if (is_seen) {
         runs = cells_beside(matter, spring_sweep_->stretched_runs());
     }
-    if (in_motion && runs.empty()) return {};
+    if (is_seen && runs.empty()) return {};
     const std::vector<CellId> cells =
-        cells_beyond_strength(matter, loose_.laws(), in_motion ? &runs : nullptr, carried());
+        cells_beyond_strength(matter, loose_.laws(), is_seen ? &runs : nullptr, carried());
     if (cells.empty()) return {};
-    const double before = in_motion ? energy_found(matter) : elastic_energy(matter);
+    const double before = is_seen ? energy_found(matter) : elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);
     for (CellId cell : cells) matter.cell_cracked[cell] = 1;
     return {static_cast<int>(cells.size()), energy_of_change(matter, before)};

@@ -28,20 +28,25 @@ struct Cracked {
     double lost = 0;  // energy that turning into springs took [J]
 };
 
+// What becomes of energy that a change of the matter would make.
+enum class Excess {
+    lives_on,  // in its motion, so none is made
+    // At rest. NOTE: shapes at rest that are laid down so that none is made load what is beside a
+    // crack as the crack closes: a bar of ice went to 23 pieces instead of 2.
+    is_lost,
+};
+
 class LatticeForces {
   public:
-    // `in_motion`: energy that a change of the matter made would go on in its motion, so none is
-    // made. NOTE: at rest it is gone at once, and shapes at rest that were laid down for it load
-    // what is beside a crack as the crack closes: a bar of ice went to 23 pieces instead of 2.
-    explicit LatticeForces(const Aggregate& matter, bool in_motion = false);
+    explicit LatticeForces(const Aggregate& matter, Excess excess = Excess::is_lost);
     LatticeForces(LatticeForces&&) noexcept;
     ~LatticeForces();
 
     // Connections have been severed or broken, or cells cracked. Such a cell is no cell any more;
-    // what it has left acts as plain springs, with the plastic strain it had. In motion those of
-    // matter that breaks are laid down so that they hold no more than it did. Where a blade has
-    // `severed` what has flowed they are at rest as they lie: how a cell has flowed says little of
-    // what bends it, and held to that what is cut loose crumples.
+    // what it has left acts as plain springs, with the plastic strain it had. Where excess lives on
+    // those of matter that breaks are laid down so that they hold no more than it did. Where a
+    // blade has `severed` what has flowed they are at rest as they lie: how a cell has flowed says
+    // little of what bends it, and held to that what is cut loose crumples.
     void connections_changed(Aggregate& matter, bool severed = false);
     // The matter has been put back to what it was before such changes.
     void take_in(const Aggregate& matter);
@@ -59,18 +64,17 @@ class LatticeForces {
     // left to themselves until cells are inside out, which find() tells.
     bool saw_crushed() const;
 
-    // Remembers the flow and softening of a converged state. In motion find() was last called at
-    // these positions, with what flows, and what it saw is all that matters. Adds what rest
+    // Remembers the flow and softening of a converged state. `found`: by find(). Adds what rest
     // lengths grow by to `growths`, where that is asked for.
-    Committed commit(Aggregate& matter, bool in_motion = false, SlabGrowths* growths = nullptr);
+    Committed commit(Aggregate& matter, Forces found = Forces::stale,
+                     SlabGrowths* growths = nullptr);
     // In motion, where find() was just called: books what springs lose by flow in this step, while
     // velocities are those of the way there.
     void book_flow(const Aggregate& matter, double step);
 
     // Cells of a converged and committed state that have reached their strength act as springs from
     // now on; the most strained go first. The state has to be brought to rest again.
-    // In motion: as for commit().
-    Cracked crack(Aggregate& matter, bool in_motion = false);
+    Cracked crack(Aggregate& matter, Forces found = Forces::stale);
 
     // Whether snap() can find anything: cracked matter that breaks and does not flow. What flows
     // bends, and has no lengths at rest by which to tell.
@@ -121,7 +125,7 @@ class LatticeForces {
     // Where the strains of loose springs have just been found [J].
     double energy_found(const Aggregate& matter);
 
-    bool in_motion_;
+    Excess excess_;
     std::unique_ptr<LatticeSweep> spring_sweep_;  // where springs or branches act
     std::vector<LatticeSweep> branch_sweep_;      // the branches' own, of several materials
     std::unique_ptr<CellFlow> spring_flow_;       // springs that yield

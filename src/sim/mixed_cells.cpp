@@ -185,13 +185,13 @@ void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialL
     }
 }
 
-double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, bool seen,
+double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, Forces found,
                           RestGrowths* growths) const {
     const double volume = matter.lattice.cell_volume();
     double lost = 0;
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
-        if (seen && !seen_[n].may_flow) continue;
+        if (found == Forces::fresh && !seen_[n].may_flow) continue;
         const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);
         SlotLengths was;
         if (growths) was = rest_lengths(matter, cell.cell, &cell);

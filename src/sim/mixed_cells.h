@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "sim/flow.h"
 #include "sim/material_laws.h"
 #include "sim/rest_lengths.h"
 
@@ -48,10 +49,9 @@ class MixedCells {
     // Adds their forces on the particles [N]. Laws: by material, as they are to hold now.
     void add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                     Vec3Array& force);
-    // Remembers the flow of a converged state; returns the work that it took [J]. `seen`: the last
-    // forces were at these positions, with what flows.
-    double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, bool seen,
-                  RestGrowths* growths = nullptr) const;
+    // Remembers the flow of a converged state; returns the work that it took [J].
+    double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, Forces found,
+                  RestGrowths* growths) const;
     double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws) const;
 
     // What the last forces saw in a cell, and where the search for its jump ended.

@@ -19,10 +19,7 @@ double stable_step(const Aggregate& matter, double safety, const LatticeForces& 
                    const SwingBound& swings, const InternalDamping& damping) {
     std::vector<double> damped(matter.particle_count(), 0.0);
     damping.add_stiffness_bound(matter, damped);
-    double branches = 0;
-    for (std::size_t p = 0; p < damped.size(); ++p) {
-        branches = std::max(branches, damped[p] / matter.particle_mass[p]);
-    }
+    const double branches = most_per_mass(damped, matter);
     const double zeta = largest_damping_ratio(matter);
     return safety * 2 / std::sqrt(swings.squared(matter, lattice) + branches) *
            (std::sqrt(1 + zeta * zeta) - zeta);
@@ -96,7 +93,7 @@ double explicit_step(const Aggregate& matter, const SimSettings& settings) {
 MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus,
                        const SimSettings& settings)
     : matter_(matter),
-      lattice_(matter, true),
+      lattice_(matter, Excess::lives_on),
       breaks_(matter.breaks()),
       swings_(matter, breaks_ || !apparatus.blade.empty()),
       damping_(matter, std::sqrt(swings_.squared(matter, lattice_))),
@@ -232,8 +229,8 @@ bool MovingBody::remember(const Drive& now, double step, BodyOutcome& outcome) {
         broken += lost.broken;
     };
     const bool damped = damping_.acts() && !implicit_;
-    book(lattice_.commit(matter_, true, damped ? damping_.growths() : nullptr));
-    const Cracked cracked = lattice_.crack(matter_, true);
+    book(lattice_.commit(matter_, Forces::fresh, damped ? damping_.growths() : nullptr));
+    const Cracked cracked = lattice_.crack(matter_, Forces::fresh);
     outcome.fracture_work += cracked.lost;
     if (lattice_.may_snap()) {
         turned_ += step * top_speed();
@@ -355,11 +352,8 @@ double MovingBody::present_step() {
     if (inside_out_ == 0 && !stiffens_) return present_step_;
     std::vector<double> guard(matter_.particle_count(), 0.0);
     add_guard_stiffness(matter_, guard);
-    double highest = 0;
-    for (std::size_t p = 0; p < guard.size(); ++p) {
-        highest = std::max(highest, guard[p] / matter_.particle_mass[p]);
-    }
-    return 1 / std::sqrt(1 / (present_step_ * present_step_) + 0.25 * highest);
+    return 1 /
+           std::sqrt(1 / (present_step_ * present_step_) + 0.25 * most_per_mass(guard, matter_));
 }
 
 void MovingBody::save(State& state) const {

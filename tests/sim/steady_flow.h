@@ -40,7 +40,7 @@ inline SteadyFlow flow_steadily(Aggregate& m, double strain, int steps) {
         }
         const std::vector<BranchStep> branches = damping.step(m, lattice, dt);
         lattice.find(m, Flow::trial, force, branches, &result.given);
-        result.plastic += lattice.commit(m, true, damping.growths()).plastic;
+        result.plastic += lattice.commit(m, Forces::fresh, damping.growths()).plastic;
     }
     result.stored = damping.stored_energy(m, lattice);
     return result;

@@ -227,7 +227,7 @@ TEST_CASE("springs flow to the same bytes at any width and thread count") {
                 m.particle_position.set(p, m.particle_position.at(p) + far * far * 1e2 * off);
             }
             RestGrowths growths;
-            taken.push_back(flow.commit(m, false, &growths));
+            taken.push_back(flow.commit(m, Forces::stale, &growths));
             for (const auto& of : growths) {
                 for (const RestGrowth& one : of) taken.push_back(one.by);
             }

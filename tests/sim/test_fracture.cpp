@@ -343,7 +343,7 @@ TEST_CASE("a cell that turns into springs sets no energy free, however little of
             for (int i = 0; i < 3; ++i) x[i] += 2 * onset * a * draw(engine);
             matter.particle_position.set(p, x);
         }
-        LatticeForces forces(matter, true);
+        LatticeForces forces(matter, Excess::lives_on);
         const double before = forces.elastic_energy(matter);
         const Cracked cracked = forces.crack(matter);
         if (cracked.cells == 0) continue;
@@ -412,9 +412,9 @@ TEST_CASE("what the sweep tells of flow and strength is what a look at every cel
             every.find(all, Flow::trial, g);
             CHECK(f.x == g.x);
             const double plastic = every.commit(all).plastic;
-            CHECK(some.commit(told, true).plastic == plastic);
+            CHECK(some.commit(told, Forces::fresh).plastic == plastic);
             flowed += plastic;
-            const Cracked one = some.crack(told, true), other = every.crack(all);
+            const Cracked one = some.crack(told, Forces::fresh), other = every.crack(all);
             CHECK(one.cells == other.cells);
             CHECK(one.lost == other.lost);
             CHECK(state_hash(told) == state_hash(all));
