@@ -166,17 +166,17 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().read(*force[b]);
     }
-    std::vector<ContactWay::Held> held(way_.size());
+    std::vector<ContactHeld> held(way_.size());
     const std::size_t threads = candidates() / kThreadShare;
     parallel_for(awake.size(), threads, [&](std::size_t n) { way_[awake[n]].find(step); });
     for (std::size_t w : awake) held[w] = way_[w].press();
     for (std::size_t w : awake) {
-        const ContactWay::Held& own = held[w];
+        const ContactHeld& own = held[w];
         if (pair_[w].back == w) {
             way_[w].push_own();
             continue;
         }
-        const ContactWay::Held& other = held[pair_[w].back];
+        const ContactHeld& other = held[pair_[w].back];
         const ContactHeld both = held_by_both(own, other);
         way_[w].push(share_of(own.now, other.now), 0.5 * both.gone, 0.5 * both.turned);
     }

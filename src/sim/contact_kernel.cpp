@@ -128,7 +128,7 @@ struct ContactWay::Kernel {
     // All that does not depend on forces.
     SWAGE_INLINE void prepare(const Contact& contact, const ContactMemory& last,
                               const CellCorners& corner, const CellGradient& gradient, double step,
-                              Meeting& at, Chunk& sums, Held& sum) const {
+                              Meeting& at, Chunk& sums, ContactHeld& sum) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
         at.now = Vec4{};
         for (int c = 0; c < contact.carriers; ++c) {
@@ -198,7 +198,7 @@ struct ContactWay::Kernel {
             const CellId was = contact.cell;
             CellCorners corner(b, contact);
             CellGradient gradient;
-            Held& held = kOwn ? way.own_held_[n] : result.held;
+            ContactHeld& held = kOwn ? way.own_held_[n] : result.held;
             if (kOwn) held = {};
             find<kOwn>(contact, last, way.plane_.empty() ? nullptr : &way.plane_[n], corner,
                        gradient, at);

@@ -242,7 +242,7 @@ void ContactWay::find(double step) {
     });
 }
 
-ContactWay::Held ContactWay::press() {
+ContactHeld ContactWay::press() {
     for (std::size_t chunk = 0; chunk < chunk_.size() && !at_once_; ++chunk) press_chunk(chunk);
     return pressed_;
 }
@@ -266,7 +266,7 @@ void ContactWay::share_own() {
     }
     for (const OwnGone& gone : own_gone_) own_.add_mixed(gone.way, {.gone = gone.held});
     own_gone_.clear();
-    const Held all = own_.find();
+    const ContactHeld all = own_.find();
     broken_ = all.gone;
     turned_ = all.turned;
 }

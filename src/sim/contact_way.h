@@ -66,8 +66,7 @@ class ContactWay {
     void find(double step);
     // What springs would do, and hold, if this way were alone. Of a body with itself push_own()
     // asks.
-    using Held = ContactHeld;
-    Held press();
+    ContactHeld press();
     // Adds this share of it. Half of what both ways hold less for what is gone, and for what the
     // surface turned away from [J].
     void push(double share, double gone, double turned);
@@ -146,7 +145,7 @@ class ContactWay {
         std::vector<int> moved;  // contacts that have come into other cells
         double took = 0;         // ContactSums::took, of the one half
         bool is_met = false;     // some touch that had not
-        Held held;               // by springs of the whole stiffness
+        ContactHeld held;        // by springs of the whole stiffness
         double kept = 0;         // of it, kept()
         ContactSums sums{};
     };
@@ -213,13 +212,13 @@ class ContactWay {
     std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
     std::vector<char> is_let_be_;                            // likewise; empty: none is
     double share_ = 0.5;                                     // of what this way would do alone
-    double gone_ = 0;                                        // Held::gone, of points, so far [J]
-    double broken_ = 0, turned_ = 0;                         // push()
-    double kept_ = 0;                                        // kept()
+    double gone_ = 0;                 // ContactHeld::gone, of points, so far [J]
+    double broken_ = 0, turned_ = 0;  // push()
+    double kept_ = 0;                 // kept()
     // Of a body with itself; the last is in the place of gone_.
     OwnShares own_;
     std::vector<OwnSpot> own_spot_{};
-    std::vector<Held> own_held_{};  // of each contact
+    std::vector<ContactHeld> own_held_{};  // of each contact
     std::vector<OwnGone> own_gone_{};
     ContactList list_, spare_{};         // the spare one keeps its room for the next search
     std::vector<Meeting> meeting_{};     // of each contact
@@ -232,8 +231,8 @@ class ContactWay {
     // the lowest of point_push_ on [m/s]; empty: nothing touches that had not.
     std::vector<double> met_{};
     ContactSums sums_{};
-    bool at_once_ = false;  // find() presses too, and respond() answers
-    Held pressed_{};        // press()
+    bool at_once_ = false;   // find() presses too, and respond() answers
+    ContactHeld pressed_{};  // press()
 };
 
 }  // namespace swage
