@@ -28,7 +28,7 @@ double stiffness_in(const Aggregate& matter, CellId cell, const MixedCell* mixed
 class ConnectionShares {
   public:
     ConnectionShares() = default;  // of one material: the weights
-    explicit ConnectionShares(const Aggregate& matter, const MaterialMask& counts = {});
+    ConnectionShares(const Aggregate& matter, const MaterialMask& counts);
 
     // k / k_0, 0 where the connection is severed or broken.
     float of(const Aggregate& matter, int direction, ParticleId lower) const {

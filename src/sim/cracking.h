@@ -13,12 +13,12 @@ namespace swage {
 // Sound cells whose largest elastic strain, of their material or of one of their connections, is
 // beyond onset and, over that, near the largest of all: those that are next, in the order of the
 // cells. What is committed counts; the state should have converged. `only`: runs of cells that are
-// looked at. `carried`: what each sound cell carries, 0: none; null: they are told by themselves.
-// Cells beside a crack are spared up to half as much again, and those off its track up to twice as
-// much (sim/crack_path.h).
+// looked at; null: all. `carried`: what each sound cell carries, 0: none; null: they are told by
+// themselves. Cells beside a crack are spared up to half as much again, and those off its track up
+// to twice as much (sim/crack_path.h).
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const FractureLaws& laws,
-                                          const std::vector<const CellRun*>* only = nullptr,
-                                          const std::vector<float>* carried = nullptr);
+                                          const std::vector<const CellRun*>* only,
+                                          const std::vector<float>* carried);
 
 // Particles farther from the material of their cell do not tell its strain.
 inline constexpr float kOffCentre = 0.15f;  // of the cell

@@ -87,7 +87,7 @@ double slab_energy(const BranchPlaces& own) {
 
 }  // namespace
 
-double elastic_energy(const Aggregate& matter, const ConnectionShares& shares) {
+double elastic_energy(const Aggregate& matter) {
     const double stiffness = lattice_stiffness(matter);
     const std::vector<Span>& spans = matter.lattice.span;
     const Vec3Array& x = matter.particle_position;
@@ -98,14 +98,15 @@ double elastic_energy(const Aggregate& matter, const ConnectionShares& shares) {
         float weight[kBlock + kLanes], flowed[kBlock + kLanes] = {};
         for (std::size_t s = chunk * kSpansPerChunk; s < end; ++s) {
             const Span& span = spans[s];
-            const std::vector<float>& plastic = matter.connection[span.direction].plastic;
+            const ConnectionArrays& all = matter.connection[span.direction];
+            const std::vector<float>& plastic = all.plastic;
             const double length = reference_length(matter.lattice, span.direction);
             double own = 0;
             for (int begin = 0; begin < span.count; begin += kBlock) {
                 const int count = std::min(kBlock, span.count - begin);
                 const ParticleId low = span.lower + begin, high = span.upper + begin;
                 for (int n = count / kLanes * kLanes; n < count + kLanes; ++n) weight[n] = 0;
-                shares.copy(matter, span.direction, low, count, weight);
+                all.weight.copy(low, count, weight);
                 if (!plastic.empty()) std::copy_n(plastic.data() + low, count, flowed);
                 const SpanPlaces at{{x.x.data() + low, x.y.data() + low, x.z.data() + low},
                                     {x.x.data() + high, x.y.data() + high, x.z.data() + high},

@@ -97,8 +97,8 @@ class LatticeSweep {
     double sweep(const Aggregate& matter, const Wanted& wanted, Vec3Array& force);
 };
 
-// Elastic energy stored in the connections [J].
-double elastic_energy(const Aggregate& matter, const ConnectionShares& shares = {});
+// Elastic energy stored in the connections of a body of one material [J].
+double elastic_energy(const Aggregate& matter);
 
 // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the fastest
 // of these on their own masses: w_max^2 <= max(bound / mass). Zero without connections.

@@ -21,7 +21,7 @@ class MovingContacts {
   public:
     // As RestingContacts.
     MovingContacts(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
-                   int body = 0);
+                   int body);
 
     // The same pairs and grips by the law without rates.
     const RestingContacts& at_rest() const { return rest_; }

@@ -36,7 +36,7 @@ double sum_of(const std::vector<double>& all) {
 double at_floor(Aggregate block, double stiffness, double step) {
     place(block, {Quat::Identity(), Vec3(0, 0.2 - kDeep, 0)});
     const Apparatus apparatus = floor_with(0);
-    MovingContacts contacts(block, apparatus, asked(stiffness));
+    MovingContacts contacts(block, apparatus, asked(stiffness), 0);
     contacts.limit_stiffness(block, step);
     contacts.find_candidates(block, floor_at(0));
     contacts.begin_step(floor_at(0));

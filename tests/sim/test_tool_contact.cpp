@@ -456,7 +456,7 @@ TEST_CASE("a crack elsewhere changes nothing of what a step's contacts do") {
         block.particle_velocity.set(p, Vec3(0.3, -0.5, 0));
     }
     const Apparatus apparatus = floor_with(0.5);
-    MovingContacts contacts(block, apparatus, motion_settings());
+    MovingContacts contacts(block, apparatus, motion_settings(), 0);
     contacts.limit_stiffness(block, 1e-3);
     contacts.find_candidates(block, floor_at(0));
     contacts.begin_step(floor_at(0));

@@ -87,7 +87,7 @@ TEST_CASE("connections along a series are as soft as it, those beside as stiff a
     const double give = soft + (1 - soft) / 100;
     CHECK(stiffness_in(m, cell.cell, &cell, 0, {1, 0}) == Approx(soft / give / give));
     CHECK(stiffness_in(m, cell.cell, &cell, 1, {1, 0}) == Approx(soft));
-    const ConnectionShares shares(m);
+    const ConnectionShares shares(m, {});
     const auto corner = m.lattice.cell_corners(cell.cell);
     CHECK(shares.of(m, 0, corner[0]) == Approx(0.25 / give));
 }
