@@ -37,7 +37,7 @@ Json peaks_json(const StageCurves& curves) {
 Json energies_json(const Books& books) {
     Json json = Json::object();
     for (const BookSide side :
-         {BookSide::given, BookSide::held, BookSide::passed, BookSide::taken, BookSide::left}) {
+         {BookSide::given, BookSide::held, BookSide::passed, BookSide::taken, BookSide::remaining}) {
         for (const BookEntry& entry : kBookEntries) {
             if (entry.side != side) continue;
             json[entry.key] = books.*entry.value;

@@ -36,7 +36,7 @@ struct Books {
 
 // What an entry counts as: work given to the body, energy that it holds, what other bodies pass to
 // it, what is taken from it for good, and what is left of all that.
-enum class BookSide { given, held, passed, taken, left };
+enum class BookSide { given, held, passed, taken, remaining };
 
 struct BookEntry {
     const char* column;  // of a table
@@ -60,7 +60,7 @@ inline constexpr std::array<BookEntry, 15> kBookEntries{{
     {"severed energy [J]", "severed", &Books::severed_energy, BookSide::taken},
     {"fracture energy [J]", "fracture", &Books::fracture, BookSide::taken},
     {"set free [J]", "set_free", &Books::set_free, BookSide::taken},
-    {"remainder [J]", "remainder", &Books::remainder, BookSide::left},
+    {"remainder [J]", "remainder", &Books::remainder, BookSide::remaining},
     {"passed to it [J]", "passed", &Books::passed, BookSide::passed},
 }};
 static_assert(sizeof(Books) == (kBookEntries.size() + 4) * sizeof(double),

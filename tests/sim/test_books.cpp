@@ -15,7 +15,7 @@ TEST_CASE(
         books.*entry.value = 3;
         const bool comes = entry.side == BookSide::given || entry.side == BookSide::passed;
         INFO(entry.column);
-        CHECK(books.left_over() == (comes ? 3 : entry.side == BookSide::left ? 0 : -3));
+        CHECK(books.left_over() == (comes ? 3 : entry.side == BookSide::remaining ? 0 : -3));
         CHECK((entry.at_start != nullptr) == (entry.side == BookSide::held));
         if (entry.at_start == nullptr) continue;
         books.*entry.at_start = 5;
