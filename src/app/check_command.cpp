@@ -88,7 +88,7 @@ std::string range_text(const CostRange& range, std::string (*text)(double)) {
 // How fast the film plays a stage that takes the time that it says.
 std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
     const double played = double(stage.frames) / scene.render.frame_rate.value(),
-                 slower = played / scene.duration_of(stage);
+                 slower = played / stage.duration;
     const auto times = [](double ratio) {
         return (ratio < 100 ? fmt::format("{:.3g}", ratio) : count_text(ratio)) + " times";
     };
@@ -98,7 +98,7 @@ std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
     return fmt::format("{} at {} fps show its {} {}",
                        counted(std::size_t(stage.frames), "frame", "frames"),
                        frame_rate_text(scene.render.frame_rate),
-                       quantity_text(scene.duration_of(stage), Quantity::time), speed);
+                       quantity_text(stage.duration, Quantity::time), speed);
 }
 
 // "  cells        about 1,200 of 5 mm", one below the other.

@@ -285,7 +285,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const StageSpec& first = scene.stage.front();
     const std::vector<Material> beside = materials_beside(bodies);
     const Box skin = bodies.front().skin;
-    const Machine machine = stage_machine(first, matter[0], beside, scene.duration_of(first), skin);
+    const Machine machine = stage_machine(first, matter[0], beside, skin);
     cost.place = machine_places(scene, machine, matter[0], beside, skin);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     for (std::string& amiss : tool_overlaps(machine, bodies, in_motion(first.sim.solver))) {
@@ -301,8 +301,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
             ? 0
             : std::max<long>(first.frames,
                              equilibria_along(matter[0], machine.apparatus, first.sim,
-                                              stage_drives(first, machine, legs.leg, 1,
-                                                           scene.duration_of(first))));
+                                              stage_drives(first, machine, legs.leg, 1)));
     add_up(cost, scene, input, options, matter, equilibria);
     return cost;
 }

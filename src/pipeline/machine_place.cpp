@@ -158,7 +158,7 @@ std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& 
             if (!is_first && stage.machine.load.empty()) {
                 later.frame = stage_frame(stage, work_piece, skin);
             } else if (!is_first) {
-                later = stage_machine(stage, work_piece, beside, scene.duration_of(stage), skin);
+                later = stage_machine(stage, work_piece, beside, skin);
             }
             const Machine& machine = is_first ? first : later;
             places.push_back({stage.name,

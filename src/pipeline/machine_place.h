@@ -40,7 +40,7 @@ std::string tools_text(const StageSpec& stage, const WorkFrame& frame);
 // Of all stages. `first`: the machine of the first.
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
                                          const Aggregate& work_piece,
-                                         const std::vector<Material>& beside, const Box& skin = {});
+                                         const std::vector<Material>& beside, const Box& skin);
 Json places_json(const std::vector<MachinePlace>& places);
 
 }  // namespace swage

@@ -105,7 +105,7 @@ std::string said_of_stages(const SceneSpec& scene, std::size_t stages) {
         all += fmt::format("{}={}\n", one.key, one.value);
     }
     for (std::size_t s = 0; s < stages; ++s) {
-        all += fmt::format("{:a} s\n", scene.duration_of(scene.stage[s]));
+        all += fmt::format("{:a} s\n", scene.stage[s].duration);
     }
     if (scene.output.meshes_per_frame) {  // whose names count from it
         all += fmt::format("meshes from {}\n", scene.render.first_frame);

@@ -54,10 +54,10 @@ WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece, const
 }
 
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
-                      const std::vector<Material>& beside, double duration, const Box& skin) {
+                      const std::vector<Material>& beside, const Box& skin) {
     return at_stage(stage, [&] {
         return build_machine(stage.machine, stage.parameter, stage_frame(stage, work_piece, skin),
-                             work_piece, beside, duration);
+                             work_piece, beside, stage.duration);
     });
 }
 
@@ -94,8 +94,8 @@ Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames,
 }
 
 std::vector<Drive> stage_drives(const StageSpec& stage, const Machine& machine,
-                                const std::vector<Leg>& legs, int steps, double duration) {
-    return at_stage(stage, [&] { return drives_of(machine, legs, steps, duration); });
+                                const std::vector<Leg>& legs, int steps) {
+    return at_stage(stage, [&] { return drives_of(machine, legs, steps, stage.duration); });
 }
 
 }  // namespace swage

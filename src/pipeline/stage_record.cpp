@@ -36,8 +36,8 @@ Json peaks_json(const StageCurves& curves) {
 
 Json energies_json(const Books& books) {
     Json json = Json::object();
-    for (const BookSide side :
-         {BookSide::given, BookSide::held, BookSide::passed, BookSide::taken, BookSide::remaining}) {
+    for (const BookSide side : {BookSide::given, BookSide::held, BookSide::passed, BookSide::taken,
+                                BookSide::remaining}) {
         for (const BookEntry& entry : kBookEntries) {
             if (entry.side != side) continue;
             json[entry.key] = books.*entry.value;
@@ -110,7 +110,7 @@ Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap
         {"loads", loads_json(end.machine)},
         {"frames", {end.first_frame, end.last_frame}},
         {"legs", end.legs},
-        {"duration_s", end.duration},
+        {"duration_s", end.stage.duration},
         {"remolded", end.stage.remold},
         {"masses_kg", masses},
         {"volumes_m3", volumes_json(end.bodies, end.volumes_before)},

@@ -48,7 +48,6 @@ struct StageEnd {
     const FrameReport& last;
     int first_frame, last_frame;
     std::size_t legs;
-    double duration;  // [s]
     std::size_t connections_before;
     const std::vector<BodyVolume>& volumes_before;
     std::vector<ProbePlace> probes;

@@ -32,9 +32,10 @@ double way_of(const StageEnd& end) {
                                               reach * turn_between(from[n], to[n]).norm());
         }
     };
-    Drive from = drive_at(end.machine, 0, end.duration);
+    Drive from = drive_at(end.machine, 0, end.stage.duration);
     for (int n = 1; n <= end.stage.frames; ++n) {
-        Drive to = drive_at(end.machine, static_cast<double>(n) / end.stage.frames, end.duration);
+        Drive to =
+            drive_at(end.machine, static_cast<double>(n) / end.stage.frames, end.stage.duration);
         farthest = 0;
         look(from.world_from_tool, to.world_from_tool);
         look(from.world_from_grip, to.world_from_grip);
@@ -125,7 +126,7 @@ std::string pressed_at_start(const StageEnd& end) {
     for (std::size_t b = 0; b < end.last.body.size(); ++b) {
         const Aggregate& matter = end.bodies[b].matter;
         const double energy = end.last.body[b].contact_at_start, mass = matter.mass();
-        const double a = matter.lattice.spacing, slowly = a / std::max(1.0, end.duration);
+        const double a = matter.lattice.spacing, slowly = a / std::max(1.0, end.stage.duration);
         const double harmless =
             mass * std::max(end.stage.sim.gravity.norm() * a, 0.5 * slowly * slowly);
         const Books& first = end.first.body[b];

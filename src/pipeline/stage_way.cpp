@@ -19,9 +19,8 @@ int blade_steps(const std::vector<Leg>& legs) {
 
 }  // namespace
 
-StageWay::StageWay(const StageSpec& stage, Machine& machine, const Aggregate& work_piece,
-                   double duration)
-    : stage_(stage), machine_(machine), work_piece_(work_piece), duration_(duration) {
+StageWay::StageWay(const StageSpec& stage, Machine& machine, const Aggregate& work_piece)
+    : stage_(stage), machine_(machine), work_piece_(work_piece) {
     set_out(0);
     lost_ = legs_.lost;
 }
@@ -31,7 +30,7 @@ void StageWay::set_out(double begin) {
     leg_ = 0;
     if (!machine_.apparatus.blade.empty()) steps_ = std::max(1, blade_steps(legs_.leg));
     way_ = legs_.leg.empty() ? std::vector<Drive>()
-                             : stage_drives(stage_, machine_, legs_.leg, steps_, duration_);
+                             : stage_drives(stage_, machine_, legs_.leg, steps_);
     ahead_ = way_;
 }
 
@@ -41,7 +40,8 @@ bool StageWay::goes_on_in(int frame) const {
 
 DriveAt StageWay::between() const {
     if (machine_.apparatus.limit.empty() || machine_.stop < 1) return {};
-    return [this](double time) { return drive_at(machine_, time / duration_, duration_); };
+    return
+        [this](double time) { return drive_at(machine_, time / stage_.duration, stage_.duration); };
 }
 
 void StageWay::go_on() {
@@ -55,7 +55,7 @@ void StageWay::stop(const Drive& here) {
     gone_ += part_way ? 1 : 0;
     before_ = gone_;
     has_stopped_ = true;
-    machine_.stop = here.time / duration_;
+    machine_.stop = here.time / stage_.duration;
     const Drive stopped = here;
     set_out(machine_.stop);
     if (way_.empty()) {

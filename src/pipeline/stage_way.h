@@ -12,8 +12,7 @@ namespace swage {
 class StageWay {
   public:
     // All must outlive it. Throws as stage_legs().
-    StageWay(const StageSpec& stage, Machine& machine, const Aggregate& work_piece,
-             double duration);
+    StageWay(const StageSpec& stage, Machine& machine, const Aggregate& work_piece);
 
     // Whether the next leg belongs to the n-th frame, from 1.
     bool goes_on_in(int frame) const;
@@ -51,7 +50,6 @@ class StageWay {
     const StageSpec& stage_;
     Machine& machine_;
     const Aggregate& work_piece_;
-    double duration_;
     Legs legs_;
     int steps_ = 1, lost_ = 0;
     std::vector<Drive> way_;

@@ -86,7 +86,7 @@ Strikes strikes(const SceneSpec& scene, const StageSpec& stage) {
     Strikes found;
     const bool can_strike = !stage.machine.tool.empty() || scene.body.size() > 1;
     if (!can_strike) return found;
-    const double fall = stage.sim.gravity.norm() * scene.duration_of(stage);
+    const double fall = stage.sim.gravity.norm() * stage.duration;
     const auto grow = [](CostRange& range, double least, double most) {
         range = {std::max(range.least, least), std::max(range.most, most)};
     };
@@ -134,7 +134,7 @@ StageTime relaxed(const SceneSpec& scene, const StageSpec& stage, const WorkLoad
 StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load) {
     const Strikes by = strikes(scene, stage);
     const bool is_driven = !stage.machine.stands() || !stage.machine.load.empty();
-    const double elastic = scene.duration_of(stage) * load.steps_per_second;
+    const double elastic = stage.duration * load.steps_per_second;
     CostRange steps = {elastic, elastic};
     if (scene.yields()) {
         const double driven = is_driven ? kFlattenedByMachines : 1;

@@ -73,6 +73,15 @@ void report_unknown_sections(const Document& document, Reading& reading) {
     }
 }
 
+// What the scene does not say and its other sections do.
+void fill_in(SceneSpec& scene) {
+    if (scene.render.up == Up::automatic) scene.render.up = up_of(scene.stage);
+    for (StageSpec& stage : scene.stage) {
+        if (stage.duration > 0) continue;
+        stage.duration = static_cast<double>(stage.frames) / scene.render.frame_rate.value();
+    }
+}
+
 void refuse_remolded_blocks(TableReader& root, const SceneSpec& scene) {
     for (const StageSpec& stage : scene.stage) {
         if (!stage.remold || scene.work_piece().mold.kind != MoldKind::block) continue;
@@ -172,7 +181,7 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
                              "    [[stage]]\n    machine = \"bend\"\n    angle = \"60 deg\"");
     }
     read_render(render, scene.render);
-    if (scene.render.up == Up::automatic) scene.render.up = up_of(scene.stage);
+    fill_in(scene);
     output.truth("meshes_per_frame", scene.output.meshes_per_frame);
     read_fields(output, scene.output.fields);
     output.truth("keep_stages", scene.output.keep_stages);

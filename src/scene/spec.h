@@ -88,7 +88,7 @@ struct StageSpec {
     // The work frame's x, forward or automatic (longest side of the box), and y.
     WorldAxis axis = WorldAxis::automatic, up = WorldAxis::automatic;
     int frames = 60;      // >= 1
-    double duration = 0;  // [s] of machine time; 0: frames / frame_rate
+    double duration = 0;  // [s] of machine time, > 0 once it is read
     bool remold = false;  // mold the deformed mesh anew before this stage
     SimSettings sim;
 };
@@ -135,10 +135,6 @@ struct SceneSpec {
     }
     bool moves() const {
         return any_stage([](const StageSpec& one) { return in_motion(one.sim.solver); });
-    }
-    double duration_of(const StageSpec& of) const {  // [s]
-        return of.duration > 0 ? of.duration
-                               : static_cast<double>(of.frames) / render.frame_rate.value();
     }
     RenderSettings render;
     OutputSpec output;

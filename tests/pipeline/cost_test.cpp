@@ -42,6 +42,7 @@ struct BarScene {
         scene.body.resize(1);
         scene.body[0].mold.across = across;
         scene.stage.resize(1);
+        scene.stage[0].duration = 1;
     }
     RunCost cost() const {
         RunOptions options;

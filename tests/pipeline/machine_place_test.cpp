@@ -21,8 +21,8 @@ TEST_CASE(
     REQUIRE(reading.scene);
     const SceneSpec& scene = *reading.scene;
     const Aggregate bar = test::make_block(4, 16, 4, 0.1, scene.work_piece().material);
-    const Machine machine = stage_machine(scene.stage[0], bar, {}, 1);
-    const std::vector<MachinePlace> places = machine_places(scene, machine, bar, {});
+    const Machine machine = stage_machine(scene.stage[0], bar, {}, Box{});
+    const std::vector<MachinePlace> places = machine_places(scene, machine, bar, {}, Box{});
     REQUIRE(places.size() == 2);
     CHECK(places[0].axes == "the machine's x, y, z are the world's y, z, x");
     CHECK(places[1].axes == "the machine's x, y, z are the world's y, -x, z");
@@ -47,7 +47,7 @@ TEST_CASE(
     CHECK(places[0].tools.empty());  // it holds
 
     const Aggregate along_x = test::make_block(16, 4, 4, 0.1, scene.work_piece().material);
-    CHECK(axes_text(stage_frame(scene.stage[0], along_x)) == "");
+    CHECK(axes_text(stage_frame(scene.stage[0], along_x, Box{})) == "");
 }
 
 TEST_CASE("it is told from which side of the world tools come, and what brings them from above") {
@@ -61,7 +61,7 @@ TEST_CASE("it is told from which side of the world tools come, and what brings t
                        {}, test::shipped());
         REQUIRE(reading.scene);
         const StageSpec& spec = reading.scene->stage[0];
-        return tools_text(spec, stage_frame(spec, block));
+        return tools_text(spec, stage_frame(spec, block, Box{}));
     };
     const Aggregate lies = test::make_block(16, 4, 4, 0.1, Material{}),
                     stands = test::make_block(4, 16, 4, 0.1, Material{});

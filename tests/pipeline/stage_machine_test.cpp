@@ -25,7 +25,7 @@ TEST_CASE("a lone gravity points against what the machine calls up, however the 
         cells[longest] = 16;
         const Aggregate body = test::make_block(cells.x(), cells.y(), cells.z(), 0.1,
                                                 reading.scene->work_piece().material);
-        const Machine machine = stage_machine(shelf, body, {}, 1);
+        const Machine machine = stage_machine(shelf, body, {}, Box{});
         const Vec3 up = machine.frame.world_from_work.turn(Vec3::UnitY());
         CHECK((shelf.sim.gravity + 9.81 * up).norm() < 1e-12);
         for (const Pose& rest : machine.work_from_tool) {
@@ -49,7 +49,7 @@ std::string told_of_stage(const test::SceneFolder& scratch, const std::string& s
     const StageSpec& spec = reading.scene->stage[0];
     const Aggregate body = test::make_block(16, 4, 4, 0.1, reading.scene->work_piece().material);
     try {
-        stage_legs(spec, stage_machine(spec, body, {}, 1), 4, body);
+        stage_legs(spec, stage_machine(spec, body, {}, Box{}), 4, body);
     } catch (const SceneError& error) {
         CHECK(error.code() == ExitCode::scene);
         return test::told({error.mistakes()[0]}, scratch.path());
@@ -153,9 +153,10 @@ TEST_CASE(
     REQUIRE(reading.scene);
     const Material& rubber = reading.scene->work_piece().material;
     const std::vector<std::string> told =
-        foreseen_mistakes(*reading.scene, test::make_block(16, 4, 4, 0.1, rubber));
+        foreseen_mistakes(*reading.scene, test::make_block(16, 4, 4, 0.1, rubber), Box{});
     REQUIRE(told.size() == 1);
     CHECK(told[0].find("s.toml:") != std::string::npos);
     CHECK(told[0].find("up = \"x\"") != std::string::npos);
-    CHECK(foreseen_mistakes(*reading.scene, test::make_block(4, 4, 16, 0.1, rubber)).empty());
+    CHECK(
+        foreseen_mistakes(*reading.scene, test::make_block(4, 4, 16, 0.1, rubber), Box{}).empty());
 }

@@ -38,7 +38,7 @@ struct CutBar {
 
     std::string told_of(const StageSpec& stage, const FrameReport& last, int first_frame,
                         double residual = 0) {
-        const Machine machine = stage_machine(stage, bodies[0].matter, {}, 1);
+        const Machine machine = stage_machine(stage, bodies[0].matter, {}, Box{});
         StageTotals totals;
         totals.severed = 1;
         totals.residual = residual;
@@ -54,7 +54,6 @@ struct CutBar {
                            .first_frame = first_frame,
                            .last_frame = 9,
                            .legs = 8,
-                           .duration = 1,
                            .connections_before = 0,
                            .volumes_before = volumes_before,
                            .probes = {}};

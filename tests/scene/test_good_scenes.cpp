@@ -64,6 +64,7 @@ TEST_CASE("the sample scene reads whole, in SI") {
     CHECK(scene.stage[0].parameter.at("angle") == Approx(kPi / 3));
     CHECK(scene.stage[0].parameter.size() == 1);
     CHECK(scene.stage[0].frames == 60);
+    CHECK(scene.stage[0].duration == 60 / scene.render.frame_rate.value());
     CHECK(scene.render.width == 1280);
     CHECK(scene.render.height == 720);
     const std::filesystem::path source = SWAGE_SOURCE_DIR;
