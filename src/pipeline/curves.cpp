@@ -108,7 +108,7 @@ StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<T
       frame_{first_frame},
       report_{std::move(bodies)},
       probes_{probes},
-      parts_(std::min(parts, start.size())) {
+      parts_(parts) {
     for (std::size_t n = 0; n < start.size(); ++n) {
         load_.emplace_back();
         load_.back().name = start[n].name;

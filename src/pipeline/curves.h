@@ -41,12 +41,12 @@ class StageCurves {
   public:
     // The first row is the start of the stage, where nothing is felt yet: names and poses, and what
     // is known of the bodies (Simulation::start); what contacts hold there the first add() tells.
-    // The first `parts` of the loads, if not all, are of the machine, and go where they are driven.
+    // The first `parts` of the loads are of the machine, and go where they are driven.
     // `axis`: of those that turn about one (turn_axes()). `probes`: the same ones every time.
     StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
-                FrameReport bodies = {}, std::size_t parts = static_cast<std::size_t>(-1),
-                const std::vector<std::optional<TurnAxis>>& axis = {},
-                const std::vector<ProbePlace>& probes = {});
+                FrameReport bodies, std::size_t parts,
+                const std::vector<std::optional<TurnAxis>>& axis,
+                const std::vector<ProbePlace>& probes);
     void add(int frame, const FrameReport& report, const std::vector<ProbePlace>& probes = {});
     // Where the loads are within a frame, so that no turn between its ends is missed.
     void pass(const std::vector<ToolLoad>& loads);

@@ -101,7 +101,6 @@ class FrameStore {
 
     int frame_count() const { return static_cast<int>(frame_.size()); }
     const std::vector<SkinField>& fields() const { return field_; }
-    int skin_count() const { return static_cast<int>(skin_.size()); }
     int machine_count() const { return static_cast<int>(machine_.size()); }
     StoredFrame frame(int index) const;
     TriMesh skin(int index) const;

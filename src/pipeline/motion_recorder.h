@@ -15,14 +15,13 @@ std::vector<Pose> part_poses(const Drive& drive);
 class MotionRecorder {
   public:
     // `fields`: that each frame is to hold.
-    explicit MotionRecorder(const std::filesystem::path& file,
-                            const std::vector<SkinField>& fields = {})
+    MotionRecorder(const std::filesystem::path& file, const std::vector<SkinField>& fields)
         : writer_(file, fields) {}
     // Goes on behind the mark, where the bodies had these skins, at the machine that was last.
     // `stays`: as FrameStoreWriter has it.
     MotionRecorder(const std::filesystem::path& file, const std::filesystem::path& from,
                    const MotionMark& mark, const std::vector<WorkPiece>& bodies,
-                   const std::vector<int>& skins, bool stays = false);
+                   const std::vector<int>& skins, bool stays);
     // From its first frame on and as long as it lives, frames are at stake (pipeline/signals.h).
     ~MotionRecorder();
 

@@ -20,7 +20,7 @@ class RenderDirectory {
     // may hold anything. Throws Error(foreign) where it is a run, holds what no drawing left or
     // another process draws there, Error(output) where it cannot be written.
     // `first_frame`: what the first is called now.
-    RenderDirectory(const std::filesystem::path& root, bool in_run, int first_frame = 1);
+    RenderDirectory(const std::filesystem::path& root, bool in_run, int first_frame);
     ~RenderDirectory();  // where nothing was drawn, nothing is left of it
     RenderDirectory(const RenderDirectory&) = delete;
     RenderDirectory& operator=(const RenderDirectory&) = delete;

@@ -19,7 +19,7 @@ struct FrameRange {
 
 // Throws Error(command_line) where a run of so many frames has not all of these. `first_frame`:
 // what the first is called.
-inline void refuse_frames_beyond(int count, const FrameRange& wanted, int first_frame = 1) {
+inline void refuse_frames_beyond(int count, const FrameRange& wanted, int first_frame) {
     if (wanted.first >= 1 && wanted.last <= count) return;
     const int later = first_frame - 1;
     std::string asked = fmt::format("{}", wanted.first + later);

@@ -20,7 +20,7 @@ struct MachineCatalogue {
 };
 // With a folder: also those in its machines/, which a scene there can name.
 MachineCatalogue machine_catalogue(const AssetPaths& assets,
-                                   const std::filesystem::path& scene_folder = {});
+                                   const std::filesystem::path& scene_folder);
 
 struct MaterialCatalogue {
     std::vector<Material> material;                    // in the order of the files
@@ -30,6 +30,6 @@ struct MaterialCatalogue {
 };
 // With a folder: also the materials beside a scene there.
 MaterialCatalogue material_catalogue(const AssetPaths& assets,
-                                     const std::filesystem::path& scene_folder = {});
+                                     const std::filesystem::path& scene_folder);
 
 }  // namespace swage

@@ -27,10 +27,10 @@ struct MachineFile {
 // Where a scene in `scene_folder` finds machines, the first of a name: its own folder `machines/`,
 // then that of every root. Without a folder: the roots'.
 std::vector<std::filesystem::path> machine_folders(const AssetPaths& assets,
-                                                   const std::filesystem::path& scene_folder = {});
+                                                   const std::filesystem::path& scene_folder);
 // Those that lie there, sorted by name.
 std::vector<MachineFile> known_machines(const AssetPaths& assets,
-                                        const std::filesystem::path& scene_folder = {});
+                                        const std::filesystem::path& scene_folder);
 
 std::string names_text(const std::vector<MachineFile>& machines);  // "bend, cut", or "none"
 std::string names_text(const std::vector<std::filesystem::path>& folders);
@@ -45,6 +45,6 @@ std::string wrong_root_text(const std::vector<std::filesystem::path>& roots);
 // Material files in the order in which a name is looked up: materials.toml beside the scene, then
 // assets/materials.toml of every root.
 std::vector<std::filesystem::path> material_files(const AssetPaths& assets,
-                                                  const std::filesystem::path& scene_folder = {});
+                                                  const std::filesystem::path& scene_folder);
 
 }  // namespace swage

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "tests/catch.h"
+#include "tests/pipeline/part_curves.h"
 
 using namespace swage;
 
@@ -14,7 +15,8 @@ namespace {
 Pose turned(double angle) { return {Quat(Eigen::AngleAxisd(angle, Vec3::UnitX())), Vec3::Zero()}; }
 
 StageCurves turning_grip(int frames, double total) {
-    StageCurves curves("1-twist", 1, {{"holder", Pose{}}, {"turner, left", Pose{}}});
+    StageCurves curves =
+        test::part_curves("1-twist", 1, {{"holder", Pose{}}, {"turner, left", Pose{}}});
     for (int f = 1; f <= frames; ++f) {
         FrameReport report;
         report.time = 0.1 * f;
@@ -35,7 +37,8 @@ TEST_CASE(
     // elsewhere.
     const Pose start{Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitX())), Vec3(3, 0, 0)};
     const TurnAxis axis{start.inverse().turn(-Vec3::UnitZ()), start.inverse() * Vec3(0, -2, 0)};
-    StageCurves curves("s", 1, {{"arm", start}, {"anvil", Pose{}}}, {}, 2, {axis, std::nullopt});
+    StageCurves curves("s", 1, {{"arm", start}, {"anvil", Pose{}}}, {}, 2, {axis, std::nullopt},
+                       {});
     const Vec3 force(0, 5, 1), torque(0.5, 0, 0.25);
     FrameReport report;
     report.load = {{"arm", start}, {"anvil", Pose{}}};
@@ -67,7 +70,7 @@ TEST_CASE("a turn is followed past half a turn and past a whole one") {
 }
 
 TEST_CASE("a turn by more than half a round within a frame is followed by its legs") {
-    StageCurves curves("s", 1, {{"turner", Pose{}}});
+    StageCurves curves = test::part_curves("s", 1, {{"turner", Pose{}}});
     FrameReport report;
     report.load.resize(1);
     for (double angle : {1.2, 2.4, 3.6, 4.8}) {
@@ -80,7 +83,7 @@ TEST_CASE("a turn by more than half a round within a frame is followed by its le
 }
 
 TEST_CASE("a turn there and back ends at nothing") {
-    StageCurves curves("s", 1, {{"turner", Pose{}}});
+    StageCurves curves = test::part_curves("s", 1, {{"turner", Pose{}}});
     for (double angle : {0.5, 1.0, 0.5, 0.0}) {
         FrameReport report;
         report.load.resize(1);
@@ -112,7 +115,7 @@ TEST_CASE("loads are plotted against what moves most") {
     CHECK(turn.value.back() == Approx(2.0 * 180 / kPi));
     CHECK(plot_axis(turning_grip(10, 0.0)).label == "time [s]");
 
-    StageCurves press("2-press", 1, {{"ram", Pose{}}});
+    StageCurves press = test::part_curves("2-press", 1, {{"ram", Pose{}}});
     FrameReport report;
     report.load.resize(1);
     report.load[0].pose.translation = {0, -0.02, 0};
@@ -122,7 +125,7 @@ TEST_CASE("loads are plotted against what moves most") {
     CHECK(travel.value.back() == Approx(20.0));
 
     // What falls takes gravity with it, which is driven nowhere.
-    StageCurves fall("3-floor", 1, {{"floor", Pose{}}, {"gravity", Pose{}}}, {}, 1);
+    StageCurves fall("3-floor", 1, {{"floor", Pose{}}, {"gravity", Pose{}}}, {}, 1, {}, {});
     report.load = {{"floor", Pose{}}, {"gravity", {Quat::Identity(), {0, -0.02, 0}}}};
     fall.add(2, report);
     CHECK(plot_axis(fall).label == "time [s]");
@@ -131,7 +134,7 @@ TEST_CASE("loads are plotted against what moves most") {
 namespace {
 
 StageCurves going(const std::vector<Pose>& way) {
-    StageCurves curves("s", 1, {{"ram", way.front()}});
+    StageCurves curves = test::part_curves("s", 1, {{"ram", way.front()}});
     for (std::size_t n = 1; n < way.size(); ++n) {
         FrameReport report;
         report.load.resize(1);
@@ -171,7 +174,7 @@ TEST_CASE("what comes back on its way comes back in the plot, and beyond its sta
 }
 
 TEST_CASE("peaks are the most that was felt, in the frame it was, and the farthest way") {
-    StageCurves curves("s", 7, {{"ram", Pose{}}, {"idle", Pose{}}});
+    StageCurves curves = test::part_curves("s", 7, {{"ram", Pose{}}, {"idle", Pose{}}});
     const double forces[] = {3, -8, 8, 1}, torques[] = {0.5, 0.25, -1, 0}, ways[] = {1, 4, 2, -3};
     for (int n = 0; n < 4; ++n) {
         FrameReport report;
@@ -198,7 +201,7 @@ TEST_CASE("peaks are the most that was felt, in the frame it was, and the farthe
 
 TEST_CASE("of a part that turns the peaks have the torque about its axis, with its sense") {
     const TurnAxis axis{Vec3::UnitZ(), Vec3(0, 0.1, 0)};
-    StageCurves curves("s", 7, {{"arm", Pose{}}}, {}, 1, {axis});
+    StageCurves curves("s", 7, {{"arm", Pose{}}}, {}, 1, {axis}, {});
     const double forces[] = {10, -30, 20};  // along x, 10 cm from the axis
     for (int n = 0; n < 3; ++n) {
         FrameReport report;
@@ -228,7 +231,7 @@ TEST_CASE("a frame of several legs keeps the deepest that a tool went in") {
 TEST_CASE("the first row has what contacts held at the start, and never a word for a number") {
     FrameReport start;
     start.contact = std::numeric_limits<double>::quiet_NaN();
-    StageCurves curves("s", 1, {{"ram", Pose{}}}, start);
+    StageCurves curves = test::part_curves("s", 1, {{"ram", Pose{}}}, start);
     CHECK(csv_text(curves).find("nan") == std::string::npos);  // before anything was found
     FrameReport report;
     report.load.resize(1);

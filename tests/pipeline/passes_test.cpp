@@ -111,7 +111,7 @@ TEST_CASE("passes change no still, and go when others are drawn in their place")
     if (!can_draw()) return;
     TwoStages run;
     const auto draw = [&](const FrameRange& frames) {
-        const RenderDirectory directory(run.out(), false);
+        const RenderDirectory directory(run.out(), false, 1);
         run.draw(frames);
         return directory.remove_others(frames, false, run.settings.passes);
     };

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/process.h"
 #include "tests/catch.h"
+#include "tests/pipeline/part_curves.h"
 #include "tests/shared/bytes_of.h"
 #include "tests/shared/scratch.h"
 
@@ -12,7 +13,8 @@ using namespace swage;
 namespace {
 
 StageCurves squeeze(const std::string& name) {
-    StageCurves curves(name, 1, {{"ram's head", Pose{}}, {"idle_roller", Pose{}}});
+    StageCurves curves =
+        test::part_curves(name, 1, {{"ram's head", Pose{}}, {"idle_roller", Pose{}}});
     for (int f = 1; f <= 5; ++f) {
         FrameReport report;
         report.load.resize(2);
@@ -37,7 +39,7 @@ TEST_CASE("a plot shows what was felt, names its axes with units, and nothing el
 TEST_CASE("a plot leaves out what is nothing beside the rest: torques of forces, and the reverse") {
     const double size = 0.1;
     const auto program = [&](double force, double torque) {
-        StageCurves curves("1-press", 1, {{"ram", Pose{}}});
+        StageCurves curves = test::part_curves("1-press", 1, {{"ram", Pose{}}});
         FrameReport report;
         report.load.resize(1);
         report.load[0].force = {0, -force, 0};
@@ -65,7 +67,7 @@ TEST_CASE("gnuplot draws every plot, an empty one too") {
     const std::filesystem::path svg = scratch.path() / "it's a plot.svg";
     const std::filesystem::path program = scratch.path() / "it's a plot.gp";
     for (const StageCurves& curves :
-         {squeeze("1-squeeze"), StageCurves("2-rest", 6, {{"ram", Pose{}}})}) {
+         {squeeze("1-squeeze"), test::part_curves("2-rest", 6, {{"ram", Pose{}}})}) {
         Plots plots(scratch.path(), {"none", "it's a plot"});
         CHECK_FALSE(plots.has_undrawn());
         write_file_whole(program, plot_program(curves, 0.1));

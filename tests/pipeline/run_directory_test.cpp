@@ -149,9 +149,9 @@ TEST_CASE("two drawings at once into one folder: the second is refused and told 
     const Scratch scratch;
     const fs::path root = scratch.path() / "pictures";
     {
-        const RenderDirectory first(root, false);
+        const RenderDirectory first(root, false, 1);
         CHECK_THROWS_WITH(
-            RenderDirectory(root, false),
+            RenderDirectory(root, false, 1),
             Catch::Contains(std::to_string(::getpid())) && Catch::Contains("is writing there"));
     }
     CHECK(!fs::exists(root));
@@ -162,7 +162,7 @@ TEST_CASE("a run is not made anew while it is drawn") {
     const fs::path root = scratch.path() / "run";
     begin_run(root, "1");
     put_text(root / "motion.bin", "frames");
-    const RenderDirectory drawing(RunDirectory::drawn_again(root), true);
+    const RenderDirectory drawing(RunDirectory::drawn_again(root), true, 1);
     RunDirectory anew(root, identity_of("2"), EarlierRun::replace);
     CHECK_THROWS_WITH(anew.begin(), Catch::Contains("is writing there"));
     CHECK(fs::exists(root / "motion.bin"));
@@ -171,7 +171,7 @@ TEST_CASE("a run is not made anew while it is drawn") {
 TEST_CASE("of folders that could not all be made none stays") {
     const Scratch scratch;
     const fs::path outer = scratch.path() / "a";
-    CHECK(code_of([&] { RenderDirectory(outer / "b" / std::string(300, 'c'), false); }) ==
+    CHECK(code_of([&] { RenderDirectory(outer / "b" / std::string(300, 'c'), false, 1); }) ==
           ExitCode::output);
     CHECK(!fs::exists(outer));
 }
@@ -184,7 +184,7 @@ TEST_CASE("stills of another naming are nobody's to remove") {
          {"frame_7.png", "frame_0007.png", "frame_0001.png", "frame_07000.png"}) {
         put_text(frames / name, "");
     }
-    const RenderDirectory drawing(root, true);
+    const RenderDirectory drawing(root, true, 1);
     CHECK(drawing.remove_others({1, 1}, true) == 1);
     CHECK(!fs::exists(frames / "frame_0007.png"));
     for (const char* name : {"frame_7.png", "frame_0001.png", "frame_07000.png"}) {

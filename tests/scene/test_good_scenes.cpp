@@ -414,7 +414,7 @@ TEST_CASE("an override of across or spacing counts instead of the file's of the 
 }
 
 TEST_CASE("every shipped machine reads without a word") {
-    const MachineCatalogue catalogue = machine_catalogue(shipped());
+    const MachineCatalogue catalogue = machine_catalogue(shipped(), {});
     INFO(told(catalogue.mistakes, SWAGE_SOURCE_DIR));
     CHECK(catalogue.mistakes.empty());
     std::vector<std::string> names;
@@ -436,7 +436,7 @@ TEST_CASE("every shipped machine reads without a word") {
 }
 
 TEST_CASE("the shipped materials are many and within sense") {
-    const MaterialCatalogue catalogue = material_catalogue(shipped());
+    const MaterialCatalogue catalogue = material_catalogue(shipped(), {});
     INFO(told(catalogue.mistakes, SWAGE_SOURCE_DIR));
     CHECK(catalogue.mistakes.empty());
     CHECK(catalogue.material.size() >= 16);

@@ -51,7 +51,7 @@ TEST_CASE("angles of the camera are open where the scene does not give them") {
 }
 
 TEST_CASE("every shipped material has a look, metal where it is one") {
-    const MaterialCatalogue catalogue = material_catalogue(shipped());
+    const MaterialCatalogue catalogue = material_catalogue(shipped(), {});
     REQUIRE(catalogue.look.size() == catalogue.material.size());
     for (std::size_t n = 0; n < catalogue.material.size(); ++n) {
         const Material& one = catalogue.material[n];

@@ -346,7 +346,7 @@ TEST_CASE("assets are found in the given folder first") {
     const AssetPaths assets = find_assets(scratch.path());
     REQUIRE_FALSE(assets.root.empty());
     CHECK(assets.root[0] == std::filesystem::canonical(scratch.path()));
-    const auto machines = known_machines({{scratch.path()}});
+    const auto machines = known_machines({{scratch.path()}}, {});
     REQUIRE(machines.size() == 1);
     CHECK(machines[0].name == "zzz");
     CHECK(machines[0].file == scratch.path() / "machines/zzz.toml");
