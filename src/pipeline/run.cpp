@@ -10,6 +10,7 @@
 #include "pipeline/frame_store.h"
 #include "pipeline/kept_run.h"
 #include "pipeline/run_record.h"
+#include "pipeline/scene_identity.h"
 #include "pipeline/signals.h"
 #include "pipeline/simulate.h"
 #include "pipeline/stage_products.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What makes a run this run, and what run.json says of it.
+// What run.json says of a run.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,6 @@
 #include "scene/spec.h"
 
 namespace swage {
-
-// What the scene says, hashes of every file that was read, of the mesh as it was understood, and of
-// what was set on the command line.
-RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                        const RunOptions& options);
 
 // How far a run has come: "state" in run.json.
 enum class RunState { begun, simulated, complete, stopped, interrupted };
