@@ -76,8 +76,7 @@ int render(const RenderArguments& given) {
     const RenderDirectory directory(out, given.out.empty(), settings.first_frame);
     Stopwatch watch;
     const DrawOutcome drawn =
-        draw_run(store, settings, frames, directory.files(), watch,
-                 record.contains("bodies") ? run_names_of(record) : RunNames());
+        draw_run(store, settings, frames, directory.files(), watch, run_names_of(record));
     const int removed = directory.remove_others(frames, drawn.film, drawn.passes);
     if (removed > 0) {
         log_info("{}: removed {} of an earlier drawing", out.string(),

@@ -107,9 +107,8 @@ RenderSettings render_settings_of(const Json& record) {
         settings.film = json.at("film").get<bool>();
         settings.tools = json.at("tools").get<bool>();
         settings.ground = json.at("ground").get<bool>();
-        // Runs of before this was asked had y.
-        settings.up = up_named(json.value("up", "y"));
-        settings.gl = gl_named(json.value("gl", "auto"));
+        settings.up = up_named(json.at("up").get<std::string>());
+        settings.gl = gl_named(json.at("gl").get<std::string>());
         settings.color = skin_field_named(json.value("color", ""));
         if (json.contains("color_range")) {
             settings.color_range = json.at("color_range").get<std::array<double, 2>>();
@@ -119,12 +118,10 @@ RenderSettings render_settings_of(const Json& record) {
                 settings.passes.push_back(*pass);
             }
         }
-        settings.legend = json.value("legend", true);
-        settings.background = background_named(json.value("background", "studio"));
-        if (json.contains("light")) {
-            settings.light.azimuth = json.at("light").at("azimuth").get<double>();
-            settings.light.elevation = json.at("light").at("elevation").get<double>();
-        }
+        settings.legend = json.at("legend").get<bool>();
+        settings.background = background_named(json.at("background").get<std::string>());
+        settings.light.azimuth = json.at("light").at("azimuth").get<double>();
+        settings.light.elevation = json.at("light").at("elevation").get<double>();
         settings.camera.clear();
         for (const Json& key : json.at("camera")) settings.camera.push_back(camera_key_of(key));
         for (const Json& angle : json.value("camera_auto", Json::array())) {
