@@ -23,6 +23,9 @@ std::vector<EdgeUse> edge_uses(const std::vector<Corners>& triangle, std::size_t
 // Of the uses of one edge, how many more run from low to high than back; 0 where it is closed.
 int excess(std::span<const EdgeUse> uses);
 
+// Whether every edge of it is closed; of no triangles too.
+bool is_closed(const TriMesh& mesh);
+
 // Calls f(std::span<const EdgeUse>) once an edge.
 template <typename F>
 void for_each_edge(const std::vector<EdgeUse>& uses, const F& f) {

@@ -161,13 +161,6 @@ void drop_flat(TriMesh& mesh, std::vector<int>& origin) {
     }
 }
 
-bool is_closed(const TriMesh& mesh) {
-    bool closed = true;
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
-                  [&](auto uses) { closed = closed && excess(uses) == 0; });
-    return closed;
-}
-
 }  // namespace
 
 bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {

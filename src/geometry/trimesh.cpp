@@ -203,4 +203,11 @@ int excess(std::span<const EdgeUse> uses) {
     return sum;
 }
 
+bool is_closed(const TriMesh& mesh) {
+    bool closed = true;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
+                  [&](auto uses) { closed = closed && excess(uses) == 0; });
+    return closed;
+}
+
 }  // namespace swage

@@ -6,13 +6,6 @@
 
 namespace swage {
 
-bool is_open(const TriMesh& mesh) {
-    bool open = false;
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
-                  [&](auto uses) { open = open || excess(uses) != 0; });
-    return open;
-}
-
 CornerValues::CornerValues(const std::vector<Corners>& ids, std::size_t count,
                            const PolygonCorners& polygons)
     : index(polygons.corner.size(), -1) {
@@ -47,7 +40,7 @@ void write_usd_surface(UsdText& out, const TriMesh& mesh, const Vec3& color) {
     const PolygonCorners polygons = rejoin_polygons(mesh);
     const Box box = box_of(mesh.position);
     const auto place = [&](const Vec3& p) { out.vector<3>(p.cast<float>()); };
-    if (is_open(mesh)) out.line("uniform bool doubleSided = 1");
+    if (!is_closed(mesh)) out.line("uniform bool doubleSided = 1");
     out.value("float3[] extent", "", always,
               [&](int) { out.list(2, [&](std::size_t end) { place(end ? box.high : box.low); }); });
     out.value("int[] faceVertexCounts", "", always, [&](int) {

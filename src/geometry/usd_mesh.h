@@ -13,9 +13,6 @@ namespace swage {
 inline constexpr const char* kUsdBinds = "prepend apiSchemas = [\"MaterialBindingAPI\"]";
 inline constexpr const char* kUsdOfCorners = "faceVarying";
 
-// Whether any of its edges has a face on one side only.
-bool is_open(const TriMesh& mesh);
-
 // The values that corners have, without those that none has, and which of them each has.
 struct CornerValues {
     std::vector<int> used, index;

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "geometry/edges.h"
 #include "geometry/files_beside.h"
 #include "geometry/usd_look.h"
 #include "geometry/usd_mesh.h"
@@ -185,7 +186,7 @@ class Exporter {
         if (!skin.mesh.position_color.empty()) {
             track.skin_bytes += kColorBytes * double(skin.mesh.position.size());
         }
-        track.is_open = track.is_open || swage::is_open(skin.mesh);
+        track.is_open = track.is_open || !is_closed(skin.mesh);
         track.has_uv = track.has_uv || !skin.mesh.triangle_uv.empty();
         track.has_colors = track.has_colors || !skin.mesh.position_color.empty();
         track.has_normals =

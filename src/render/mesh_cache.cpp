@@ -50,12 +50,9 @@ void attribute(const Gl& gl, GLuint place, GLint size, std::size_t stride, std::
                            reinterpret_cast<const void*>(offset));
 }
 
-bool is_closed(const TriMesh& mesh) {
-    bool closed = !mesh.triangle.empty();
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
-                  [&](const auto& uses) { closed = closed && excess(uses) == 0; });
-    if (!closed) return false;
-    // Of a body inside out the far side would show, whatever stands beside it.
+// Of a body inside out the far side would show, whatever stands beside it.
+bool holds_volume(const TriMesh& mesh) {
+    if (mesh.triangle.empty() || !is_closed(mesh)) return false;
     const std::vector<double> volume = component_volumes(mesh, surface_components(mesh));
     const auto [least, most] = std::minmax_element(volume.begin(), volume.end());
     return *most > 0 && *least > -1e-9 * *most;  // two sheets back to back hold nothing
@@ -102,7 +99,7 @@ std::unique_ptr<GpuMesh> MeshCache::made(const TriMesh& mesh) const {
     } else {
         gpu->split = split_corners(mesh);
     }
-    gpu->closed = is_closed(mesh);
+    gpu->closed = holds_volume(mesh);
     const DrawMesh& split = gpu->split;
     std::vector<FixedVertex> fixed(split.vertex_position.size());
     for (std::size_t v = 0; v < fixed.size(); ++v) {
