@@ -16,9 +16,9 @@ void write_usd_poses(UsdText& out, int first, const std::vector<Pose>& of_frame)
         turn.push_back(is_turned ? Eigen::Vector4f(-now) : now);
     }
     const auto at = [&](int frame) { return static_cast<std::size_t>(frame - first); };
-    out.value("quatf xformOp:orient", "", changes(turn, first, true),
+    out.value("quatf xformOp:orient", "", changes(turn, first, Between::straight),
               [&](int frame) { out.vector<4>(turn[at(frame)]); });
-    out.value("double3 xformOp:translate", "", changes(place, first, true),
+    out.value("double3 xformOp:translate", "", changes(place, first, Between::straight),
               [&](int frame) { out.place(place[at(frame)]); });
     out.line("uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]");
 }

@@ -11,14 +11,18 @@
 
 namespace swage {
 
-// Times at which something is another than before; `held`: and those right before.
+// What readers make of the time between two samples.
+enum class Between { held, straight };
+
+// Times at which something is another than before; where readers go straight also those right
+// before.
 template <typename T>
-std::vector<int> changes(const std::vector<T>& of_frame, int first, bool held) {
+std::vector<int> changes(const std::vector<T>& of_frame, int first, Between between) {
     std::vector<int> time = {first};
     for (std::size_t f = 1; f < of_frame.size(); ++f) {
         if (of_frame[f] == of_frame[f - 1]) continue;
         const int now = first + static_cast<int>(f);
-        if (held && time.back() < now - 1) time.push_back(now - 1);
+        if (between == Between::straight && time.back() < now - 1) time.push_back(now - 1);
         time.push_back(now);
     }
     return time;

@@ -207,7 +207,8 @@ class Exporter {
             bytes += track.skin_bytes + kPlaceBytes * sum(track.vertices, moves(track));
             if (track.has_normals) bytes += kNormalBytes * sum(track.smooth_groups, moves(track));
             for (const auto& field : track.field) {
-                bytes += kFieldBytes * sum(track.vertices, changes(field, frames_.first, true));
+                bytes += kFieldBytes *
+                         sum(track.vertices, changes(field, frames_.first, Between::straight));
             }
         }
         return bytes;
@@ -285,14 +286,14 @@ class Exporter {
     }
 
     std::vector<int> moves(const Track& track) const {
-        return changes(track.shape, frames_.first, true);
+        return changes(track.shape, frames_.first, Between::straight);
     }
-    std::vector<int> new_skins(std::size_t body, bool held) const {
-        return changes(track_[body].skin, frames_.first, held);
+    std::vector<int> new_skins(std::size_t body, Between between) const {
+        return changes(track_[body].skin, frames_.first, between);
     }
 
     void write_faces(UsdText& out, std::size_t body) {
-        const std::vector<int> times = new_skins(body, false);
+        const std::vector<int> times = new_skins(body, Between::held);
         out.value("int[] faceVertexCounts", "", times, [&](int frame) {
             const std::vector<std::size_t>& first = skin(body, frame).polygons.first;
             out.list(first.size() - 1,
@@ -309,7 +310,7 @@ class Exporter {
 
     // USD's are linear, as those of meshes here are.
     void write_colors(UsdText& out, std::size_t body) {
-        out.value("color3f[] primvars:displayColor", "vertex", new_skins(body, true),
+        out.value("color3f[] primvars:displayColor", "vertex", new_skins(body, Between::straight),
                   [&](int frame) {
                       const TriMesh& mesh = skin(body, frame).mesh;
                       out.list(mesh.position.size(), [&](std::size_t i) {
@@ -325,11 +326,12 @@ class Exporter {
             const Skin& now = skin(body, frame);
             write_usd_normals(out, now.mesh, place, corner_normals(now.mesh, now.polygons));
         });
-        out.value("int[] primvars:normals:indices", "", new_skins(body, false), [&](int frame) {
-            const Skin& now = skin(body, frame);
-            const CornerValues known = corner_normals(now.mesh, now.polygons);
-            out.list(known.index.size(), [&](std::size_t i) { out.number(known.index[i]); });
-        });
+        out.value(
+            "int[] primvars:normals:indices", "", new_skins(body, Between::held), [&](int frame) {
+                const Skin& now = skin(body, frame);
+                const CornerValues known = corner_normals(now.mesh, now.polygons);
+                out.list(known.index.size(), [&](std::size_t i) { out.number(known.index[i]); });
+            });
     }
 
     // What has none lies at the last of them, (0, 0).
@@ -337,16 +339,18 @@ class Exporter {
         const auto values = [&](const Skin& now) {
             return CornerValues(now.mesh.triangle_uv, now.mesh.uv.size(), now.polygons);
         };
-        out.value("texCoord2f[] primvars:st", kUsdOfCorners, new_skins(body, true), [&](int frame) {
-            const Skin& now = skin(body, frame);
-            const CornerValues known = values(now);
-            out.list(known.used.size() + 1, [&](std::size_t i) {
-                const bool is_last = i == known.used.size();
-                out.vector<2>(
-                    (is_last ? Vec2(Vec2::Zero()) : now.mesh.uv[known.used[i]]).cast<float>());
+        out.value(
+            "texCoord2f[] primvars:st", kUsdOfCorners, new_skins(body, Between::straight),
+            [&](int frame) {
+                const Skin& now = skin(body, frame);
+                const CornerValues known = values(now);
+                out.list(known.used.size() + 1, [&](std::size_t i) {
+                    const bool is_last = i == known.used.size();
+                    out.vector<2>(
+                        (is_last ? Vec2(Vec2::Zero()) : now.mesh.uv[known.used[i]]).cast<float>());
+                });
             });
-        });
-        out.value("int[] primvars:st:indices", "", new_skins(body, false), [&](int frame) {
+        out.value("int[] primvars:st:indices", "", new_skins(body, Between::held), [&](int frame) {
             const CornerValues known = values(skin(body, frame));
             const int none = static_cast<int>(known.used.size());
             out.list(known.index.size(), [&](std::size_t i) {
@@ -358,7 +362,8 @@ class Exporter {
     void write_fields(UsdText& out, std::size_t body) {
         for (std::size_t n = 0; n < store_.fields().size(); ++n) {
             const std::string name = words_of(store_.fields()[n]).name;
-            const std::vector<int> times = changes(track_[body].field[n], frames_.first, true);
+            const std::vector<int> times =
+                changes(track_[body].field[n], frames_.first, Between::straight);
             out.value("float[] primvars:" + name, "vertex", times, [&](int frame) {
                 throw_if_interrupted();
                 const std::vector<float> value = store_.frame(frame - 1).body.at(body).field[n];
@@ -386,7 +391,7 @@ class Exporter {
             out.line(
                 "uniform token elementType = \"face\"\n"
                 "uniform token familyName = \"materialBind\"");
-            out.value("int[] indices", "", new_skins(body, false), [&](int frame) {
+            out.value("int[] indices", "", new_skins(body, Between::held), [&](int frame) {
                 const Skin& now = skin(body, frame);
                 const std::vector<int> of_polygon = looks_.of_polygons(now.mesh, now.polygons);
                 std::vector<int> face;

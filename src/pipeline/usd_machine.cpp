@@ -74,9 +74,10 @@ void UsdMachines::write(UsdText& out, const Machine& machine, const std::string&
                         const UsdLooks& looks) const {
     const std::vector<char>& is_seen = machine.is_seen;
     if (std::find(is_seen.begin(), is_seen.end(), 0) != is_seen.end()) {
-        out.value("token visibility", "", changes(is_seen, frames_.first, false), [&](int frame) {
-            out.word(is_seen[std::size_t(frame - frames_.first)] ? "inherited" : "invisible");
-        });
+        out.value(
+            "token visibility", "", changes(is_seen, frames_.first, Between::held), [&](int frame) {
+                out.word(is_seen[std::size_t(frame - frames_.first)] ? "inherited" : "invisible");
+            });
     }
     std::set<std::string> taken;
     for (const Part& part : machine.part) {
