@@ -12,6 +12,7 @@
 #include "geometry/near_pairs.h"
 #include "sim/body_contact.h"
 #include "tests/shared/cells.h"
+#include "tests/shared/sphere_pairs.h"
 
 using namespace swage;
 
@@ -81,7 +82,8 @@ int main() {
     }
     std::size_t pairs = 0;
     const double grid = least_ms(3, [&] { pairs = near_pairs(point, box).size(); });
-    const double tree = least_ms(3, [&] { pairs = near_pairs_by_spheres(point, box).size(); });
+    const double tree =
+        least_ms(3, [&] { pairs = test::near_pairs_by_spheres(point, box).size(); });
     fmt::print("{} points, {} boxes, {} pairs: grid {:.1f} ms, trees of spheres {:.1f} ms\n",
                point.size(), box.size(), pairs, grid, tree);
 }

@@ -3,6 +3,7 @@
 
 #include "geometry/near_pairs.h"
 #include "tests/catch.h"
+#include "tests/shared/sphere_pairs.h"
 
 using namespace swage;
 
@@ -45,6 +46,6 @@ TEST_CASE("grid and trees of spheres find all pairs of random scenes, in one ord
         const auto wanted = by_trying_all(point, box);
         INFO("scene " << scene << ", pairs " << wanted.size());
         CHECK(near_pairs(point, box) == wanted);
-        CHECK(near_pairs_by_spheres(point, box) == wanted);
+        CHECK(test::near_pairs_by_spheres(point, box) == wanted);
     }
 }
