@@ -308,7 +308,7 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
                                   "faces that way and lies in its box",
                                   spec.name));
     }
-    load.closed = load.share.empty() && is_closed(matter, load.point);
+    load.closed = load.share.empty() && are_whole_surfaces(matter, load.point);
     if (spec.force) {
         const Vec3 force = setting.frame.world_from_work.turn(
             evaluate(*spec.force, setting.known, Quantity::force));

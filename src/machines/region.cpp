@@ -154,7 +154,7 @@ std::vector<SurfaceComponent> components_of(const Aggregate& matter, const Surfa
     return components;
 }
 
-bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
+bool are_whole_surfaces(const Aggregate& matter, const std::vector<int>& points) {
     if (points.size() == matter.surface.size()) return true;
     const NearPoints near(matter, points);
     std::vector<char> is_chosen(matter.surface.size(), 0);

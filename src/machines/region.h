@@ -35,6 +35,6 @@ struct SurfaceComponent {
 std::vector<SurfaceComponent> components_of(const Aggregate& matter, const SurfacePart& part);
 
 // Whether the points make up whole closed surfaces: none of them has a neighbour that is left out.
-bool is_closed(const Aggregate& matter, const std::vector<int>& points);
+bool are_whole_surfaces(const Aggregate& matter, const std::vector<int>& points);
 
 }  // namespace swage

@@ -38,7 +38,7 @@ CornerGroups corner_groups_of_cut(const Aggregate& matter,
     });
 }
 
-bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
+bool corners_hang_together(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
     float least = 1;
     for (const auto& [direction, low] : kCellConnection) {
         least = std::min(least, matter.connection[direction].weight[corner[low]]);

@@ -19,7 +19,7 @@ CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId,
 // As if nothing had broken by load: what blades have left together.
 CornerGroups corner_groups_of_cut(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
 // Whether all of them hang together, be it not by every connection (as of cell_is_whole).
-bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
+bool corners_hang_together(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
 
 // The first of `corners` that weighs most; -1: there is none.
 int heaviest_corner(const std::array<double, 8>& weight, CornerMask corners);

@@ -125,7 +125,7 @@ void bind_vertex(const Aggregate& matter, const Pieces& pieces, const Vec3& plac
     if (side != 0) return;
     side = kAllCorners;
     const bool is_own = pieces.particle_piece[corner[0]] == pieces.particle_piece[behind];
-    if (!owner.at_cut && is_own && is_whole(matter, corner)) return;
+    if (!owner.at_cut && is_own && corners_hang_together(matter, corner)) return;
     cell = whole_cell_near(matter, owner.cell, behind, place);
     if (cell >= 0) return;
     cell = owner.cell;

@@ -133,7 +133,7 @@ void for_each_vertex(const Mount& mount, const Aggregate& matter, const Visit& v
                 if (!mount.hold[v].isZero(0)) at += turn() * mount.hold[v];
                 visit(v, at, group.cell, turn);
             };
-            const bool whole = is_whole(matter, corner);
+            const bool whole = corners_hang_together(matter, corner);
             if (whole && mount.kind == SkinKind::mount) {
                 moved.resize(static_cast<std::size_t>(group.count));
                 whole_displacements(half_frames(cell), &mount.carrier[group.first], group.count,

@@ -22,7 +22,7 @@ Vec3 hold_between(const Vec3& reference, std::span<const BodyPlace> others) {
 BodyPlace PieceMap::beside(const Vec3& reference, std::span<const BodyPlace> others) const {
     BodyPlace place{reference, carrying_cell(matter_, reference), kAllCorners,
                     hold_between(reference, others)};
-    if (!is_whole(matter_, matter_.lattice.cell_corners(place.cell))) {
+    if (!corners_hang_together(matter_, matter_.lattice.cell_corners(place.cell))) {
         for (const BodyPlace& other : others) {
             if (other.cell != place.cell) continue;
             place.side = other.side;

@@ -111,9 +111,9 @@ TEST_CASE("a cavity is a closed surface, a part of one is not") {
     const auto half =
         points_where(hollow, [](const Vec3& x) { return x.norm() < 0.5 && x.x() > 0; });
     REQUIRE(half.size() > 20);
-    CHECK(is_closed(hollow, inner));
-    CHECK(is_closed(hollow, outer));
-    CHECK_FALSE(is_closed(hollow, half));
+    CHECK(are_whole_surfaces(hollow, inner));
+    CHECK(are_whole_surfaces(hollow, outer));
+    CHECK_FALSE(are_whole_surfaces(hollow, half));
 }
 
 TEST_CASE("what of a surface looks to a side is told part by part, with how much and where it is") {
