@@ -56,16 +56,17 @@ struct Setting {  // what every part of a machine is set up in
     throw PlacedError(at.place, what);
 }
 
-double positive(const Setting& setting, const Expression& text, const std::string& tool,
+// A length. `of`: what has it, as "tool anvil".
+double positive(const Setting& setting, const Expression& text, const std::string& of,
                 const char* quantity) {
     const double value = evaluate(text, setting.known);
     if (!(value > 0)) {
-        refuse(text, fmt::format("the {} of tool {} is {} and must be more than 0", quantity, tool,
+        refuse(text, fmt::format("the {} of {} is {} and must be more than 0", quantity, of,
                                  quantity_text(value, Quantity::length)));
     }
     const std::string why = why_not_meant(value, Quantity::length, true);
     if (why.empty()) return value;
-    refuse(text, fmt::format("the {} of tool {}: {}", quantity, tool, why));
+    refuse(text, fmt::format("the {} of {}: {}", quantity, of, why));
 }
 
 Vec3 length3(const Setting& setting, const Expression3& text) {
@@ -81,7 +82,7 @@ MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
     }
     const Box box = box_of(mesh->position);
     const double scale =
-        positive(setting, tool.length, tool.name, "length") / box.size().maxCoeff();
+        positive(setting, tool.length, "tool " + tool.name, "length") / box.size().maxCoeff();
     for (Vec3& p : mesh->position) p = scale * (p - box.center());
     auto field = std::make_shared<const DistanceField>(*mesh);
     if (!field->has_inside()) {
@@ -95,7 +96,7 @@ MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
 
 Shape shape_of(const Setting& setting, const ToolSpec& tool) {
     const auto length = [&](const Expression& text, const char* quantity) {
-        return positive(setting, text, tool.name, quantity);
+        return positive(setting, text, "tool " + tool.name, quantity);
     };
     if (tool.shape == ToolShape::cylinder) {
         return CylinderShape{length(tool.radius, "radius"), length(tool.length, "length")};
@@ -262,17 +263,12 @@ void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) 
                            edge.size() < 3 ? "needs at least two different points"
                                            : "begins and ends at one point"));
     }
-    const double thickness = evaluate(spec.thickness, setting.known, Quantity::length);
-    if (!(thickness > 0)) {
-        refuse(spec.thickness,
-               fmt::format("the thickness of blade {} is {} and must be more than 0", spec.name,
-                           quantity_text(thickness, Quantity::length)));
-    }
+    const std::string whose = "blade " + spec.name;
+    const double thickness = positive(setting, spec.thickness, whose, "thickness");
     const Vec3 centre = box_of(edge).center();
     Motion motion(spec.motion, setting.timed());
 
     // The plate stands behind the edge and is tall enough to show above what it has cut.
-    const std::string whose = "blade " + spec.name;
     const Vec3 start = pose_at(motion, whose, 0) * centre;
     Vec3 travel = Vec3::Zero();
     for (int n = 1; n <= kTravelSamples; ++n) {

@@ -381,6 +381,8 @@ TEST_CASE("a blade's edge goes where its motion says, its plate behind it") {
     spec.blade = {blade};
     spec.blade[0].thickness = "0";
     CHECK(says(refusal(spec), {"guillotine", "blade", "thickness"}));
+    spec.blade[0].thickness = "1e-300";
+    CHECK(says(refusal(spec), {"guillotine", "the thickness of blade blade: "}));
 }
 
 TEST_CASE("motions and strengths go by the time in the stage, as x = a t^2 / 2") {
