@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/command.h"
+#include "app/lines.h"
 #include "app/scene_argument.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -101,19 +102,6 @@ std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
                        quantity_text(stage.duration, Quantity::time), speed);
 }
 
-// "  cells        about 1,200 of 5 mm", one below the other.
-class Lines {
-  public:
-    explicit Lines(std::string title) : text_(std::move(title)) {}
-    void add(const char* name, const std::string& value) {
-        text_ += fmt::format("  {:<12} {}\n", name, value);
-    }
-    const std::string& text() const { return text_; }
-
-  private:
-    std::string text_;
-};
-
 void add_matter(Lines& lines, const SceneSpec& scene, const std::vector<InputMesh>& input,
                 const RunCost& cost) {
     const char* about = cost.counted ? "" : "about ";
@@ -168,7 +156,7 @@ void add_stages(Lines& lines, const SceneSpec& scene, const RunCost& cost) {
 
 std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
                       const RunCost& cost) {
-    Lines lines(scene.name + ": no mistakes\n");
+    Lines lines(scene.name + ": no mistakes");
     add_matter(lines, scene, input, cost);
     add_stages(lines, scene, cost);
     lines.add("steps", range_text(cost.steps, count_text));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
+#include "app/lines.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "geometry/mesh_check.h"
@@ -43,38 +44,35 @@ std::string text_of(const std::string& file, const InputMesh& input, bool is_man
                     const std::vector<std::string>& repairs) {
     const MeshReport& report = input.report;
     const Vec3 size = report.box.empty() ? Vec3::Zero().eval() : report.box.size();
-    std::string text = file + "\n";
-    const auto line = [&](const char* name, const std::string& value) {
-        text += fmt::format("  {:<12} {}\n", name, value);
-    };
-    line("vertices", count_text(static_cast<double>(report.vertices)));
-    line("triangles", count_text(static_cast<double>(report.triangles)));
-    line("components", std::to_string(report.components));
-    line("watertight", yes_no(report.watertight));
+    Lines lines(file);
+    lines.add("vertices", count_text(static_cast<double>(report.vertices)));
+    lines.add("triangles", count_text(static_cast<double>(report.triangles)));
+    lines.add("components", std::to_string(report.components));
+    lines.add("watertight", yes_no(report.watertight));
     const bool differs = is_manifold != report.manifold;
-    line("manifold", yes_no(is_manifold) + (differs ? ", going by its vertex numbers" : ""));
-    if (differs) line("by place", "not manifold");
-    line("oriented", yes_no(report.oriented));
-    line("volume", report.bounds_a_volume() ? volume_text(report.volume) : "none enclosed");
-    line("area", area_text(report.area));
-    line("box", fmt::format("{} x {} x {}", length_text(size[0]), length_text(size[1]),
-                            length_text(size[2])));
-    line("uv", yes_no(report.has_uv));
-    line("colors", input.mesh.position_color.empty() ? "no" : "at vertices");
+    lines.add("manifold", yes_no(is_manifold) + (differs ? ", going by its vertex numbers" : ""));
+    if (differs) lines.add("by place", "not manifold");
+    lines.add("oriented", yes_no(report.oriented));
+    lines.add("volume", report.bounds_a_volume() ? volume_text(report.volume) : "none enclosed");
+    lines.add("area", area_text(report.area));
+    lines.add("box", fmt::format("{} x {} x {}", length_text(size[0]), length_text(size[1]),
+                                 length_text(size[2])));
+    lines.add("uv", yes_no(report.has_uv));
+    lines.add("colors", input.mesh.position_color.empty() ? "no" : "at vertices");
     for (const SurfaceMaterial& material : input.mesh.material) {
         const std::string name = material.name.empty() ? "(no name)" : material.name;
         const std::string image = material.texture.filename().string();
-        line("material", material.embedded_texture ? name + ", texture in the file"
-                         : image.empty()           ? name
-                                                   : name + ", texture " + image);
+        lines.add("material", material.embedded_texture ? name + ", texture in the file"
+                              : image.empty()           ? name
+                                                        : name + ", texture " + image);
     }
     for (const std::string& part : input.mesh.part_name) {
-        if (!part.empty()) line("part", part);
+        if (!part.empty()) lines.add("part", part);
     }
-    for (const std::string& finding : input.finding) line("finding", finding);
-    for (const std::string& finding : report.finding) line("finding", finding);
-    for (const std::string& repair : repairs) line("a run", repair);
-    return text;
+    for (const std::string& finding : input.finding) lines.add("finding", finding);
+    for (const std::string& finding : report.finding) lines.add("finding", finding);
+    for (const std::string& repair : repairs) lines.add("a run", repair);
+    return lines.text();
 }
 
 // Of a run's folder: how far it came, and what its bodies have used of what they can bear.
@@ -82,17 +80,19 @@ std::string run_text(const std::string& folder, const Json& record) {
     const auto text_at = [](const Json& of, const char* key) {
         return of.at(key).get<std::string>();
     };
-    std::string text = fmt::format("{}\n  {:<12} {}\n", folder, "state", text_at(record, "state"));
+    Lines lines(folder);
+    lines.add("state", text_at(record, "state"));
     for (const Json& stage : record.value("stages", Json::array())) {
-        text += fmt::format("  {:<12} {}, frames {} to {}\n", text_at(stage, "name"),
-                            text_at(stage, "machine"), stage.at("frames").at(0).get<int>(),
-                            stage.at("frames").at(1).get<int>());
-        for (const std::string& use : use_texts(stage)) text += fmt::format("  {}\n", use);
+        lines.add(
+            text_at(stage, "name"),
+            fmt::format("{}, frames {} to {}", text_at(stage, "machine"),
+                        stage.at("frames").at(0).get<int>(), stage.at("frames").at(1).get<int>()));
+        for (const std::string& use : use_texts(stage)) lines.add(use);
     }
     for (const Json& warning : record.value("warnings", Json::array())) {
-        text += fmt::format("  {:<12} {}\n", "warning", warning.get<std::string>());
+        lines.add("warning", warning.get<std::string>());
     }
-    return text;
+    return lines.text();
 }
 
 int info(const InfoArguments& given) {
