@@ -417,14 +417,11 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
         const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, plane, cut).run();
         result.planes += split.seam_edges > 0;
         result.open_parts += split.open_parts;
-        for (const SplitTriangle& triangle : split.triangle) {
-            result.cap_triangles += triangle.parent < 0;
-        }
     }
     return result;
 }
 
-int remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& matter) {
+void remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& matter) {
     const PieceMap pieces(matter);
     std::vector<int> piece;
     for (std::size_t v = 0; v < mount.reference.size(); ++v) {
@@ -435,7 +432,6 @@ int remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& ma
         keep.push_back(piece[c[0]] == piece[c[1]] && piece[c[1]] == piece[c[2]]);
     }
     keep_triangles(mesh, keep);
-    return static_cast<int>(std::count(keep.begin(), keep.end(), 0));
 }
 
 }  // namespace swage

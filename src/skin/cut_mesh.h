@@ -14,7 +14,6 @@ namespace swage {
 
 struct CutResult {
     int planes = 0;           // along which the skin was split
-    int cap_triangles = 0;    // on both sides together
     int open_parts = 0;       // closed surfaces are capped, others stay open
     bool has_curved = false;  // a sweep is no plane: the skin was not split along it
 };
@@ -28,7 +27,7 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
                    const Aggregate& matter, const std::vector<std::array<Vec3, 3>>& sweep);
 
 // Removes triangles whose corners follow different pieces of the matter: what is left to do after a
-// blade whose sweep is not plane. Returns how many.
-int remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& matter);
+// blade whose sweep is not plane.
+void remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& matter);
 
 }  // namespace swage

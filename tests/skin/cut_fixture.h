@@ -6,6 +6,7 @@
 #include <set>
 
 #include "skin/cut_mesh.h"
+#include "skin/new_look.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
@@ -20,6 +21,15 @@ inline Sweep sweep_of(const Vec3& point, const Vec3& normal, double reach) {
     const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u).normalized();
     const auto at = [&](double s, double t) -> Vec3 { return point + reach * (s * u + t * v); };
     return {{at(-1, -1), at(1, -1), at(1, 1)}, {at(-1, -1), at(1, 1), at(-1, 1)}};
+}
+
+// On both sides together.
+inline std::size_t cap_triangles(const TriMesh& mesh) {
+    std::size_t count = 0;
+    for (const int material : mesh.triangle_material) {
+        count += material >= 0 && mesh.material[std::size_t(material)].name == kCutMaterial;
+    }
+    return count;
 }
 
 // The surface of a grid of squares, closed: a box, or a tube with a square hole along x.

@@ -35,7 +35,7 @@ TEST_CASE("a cut through gives closed halves whose volumes add up to the whole")
     const CutResult result = f.cut(sweep_of(point, normal.normalized(), 3));
     CHECK(result.planes == 1);
     CHECK(result.open_parts == 0);
-    CHECK(result.cap_triangles > 0);
+    CHECK(cap_triangles(f.mesh) > 0);
     check_sound(f.mesh, f.position);
     const std::vector<TriMesh> parts = parts_of(f.mesh);
     CHECK(parts.size() >= 2);
@@ -209,7 +209,7 @@ TEST_CASE("a section that crosses itself where matter has folded into itself is 
     f.follow();
     const CutResult result = f.cut(sweep_of({0, 0, .0123}, Vec3(.1, -.05, 1).normalized(), 3));
     CHECK(result.open_parts == 0);
-    CHECK(result.cap_triangles > 0);
+    CHECK(cap_triangles(f.mesh) > 0);
     CHECK(test::is_closed(f.mesh));
     const std::vector<TriMesh> parts = parts_of(f.mesh);
     CHECK(parts.size() == 2);
@@ -268,7 +268,7 @@ TEST_CASE("an open surface is cut but not capped") {
     Fixture f(open);
     const CutResult result = f.cut(sweep_of({.0137, 0, 0}, Vec3::UnitY(), 3));
     CHECK(result.open_parts == 1);
-    CHECK(result.cap_triangles == 0);
+    CHECK(cap_triangles(f.mesh) == 0);
 }
 
 TEST_CASE("a blade that cuts, draws back, goes aside in the air and cuts again cuts twice") {
@@ -305,9 +305,8 @@ TEST_CASE("after a curved sweep, triangles between two pieces are taken out") {
     CHECK(result.planes == 0);
     test::sever_plane(f.matter, {.0137, 0, 0}, Vec3::UnitX());
     const std::size_t before = f.mesh.triangle.size();
-    const int torn = remove_torn_triangles(f.mesh, f.mount, f.matter);
-    CHECK(torn > 0);
-    CHECK(f.mesh.triangle.size() == before - torn);
+    remove_torn_triangles(f.mesh, f.mount, f.matter);
+    CHECK(f.mesh.triangle.size() < before);
     CHECK(f.mesh.triangle_uv.size() == f.mesh.triangle.size());
     CHECK(parts_of(f.mesh).size() == 2);
 }
