@@ -13,6 +13,7 @@
 
 #include "base/math.h"
 #include "geometry/box.h"
+#include "geometry/crease_angle.h"
 
 namespace swage {
 
@@ -91,7 +92,7 @@ Components surface_components(const TriMesh& mesh);
 
 // Fills smooth_group_count and triangle_smooth: corners at one position share a group when the
 // faces meet at less than `crease_angle` [rad].
-void smooth_by_crease_angle(TriMesh& mesh, double crease_angle = 40 * kPi / 180);
+void smooth_by_crease_angle(TriMesh& mesh, double crease_angle = kCreaseAngle);
 
 // The same where faces say with which they are smooth: those of one number above 0 (one a
 // triangle), and triangles of one polygon.
