@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/text.h"
+#include "geometry/mesh_check.h"
 #include "mold/prepare.h"
 
 namespace swage {
@@ -53,11 +53,16 @@ double spacing_for(const TriMesh& mesh, const MoldSettings& settings) {
 
 namespace {
 
-constexpr double kBytesParticle = 10 * 8 + kForwardCount * 8;
-constexpr double kBytesCell = sizeof(float) + sizeof(Eigen::Vector3f) +
-                              sizeof(CellId) * 10;  // and what making the lattice takes
-constexpr double kBytesShare = 48;
-constexpr double kBytesPoint = 8 * 4 + 8 * 4 + 8 + 24 + 24 + 64;
+// Position, velocity and mass; of what is stored where it differs (base/sparse_array.h), where.
+constexpr double kBytesParticle = 7 * 8 + kForwardCount * 4 / 8.0;
+constexpr double kBytesCell = sizeof(float) + 4 / 8.0;
+// Of a cell's face at the surface: its points, and the weights and centroids that differ there
+// (235 to 320 of bars, balls and rings of 8 and 40 cells across).
+constexpr double kBytesFace = 330;
+// Of a particle, while it is made: cells with their moments, sites, weights of all directions.
+constexpr double kBytesMaking = 150;
+constexpr double kMostCells = 1e9;  // ids have 31 bits
+constexpr double kTold = 1e15;      // counts beyond it
 
 MoldEstimate block_estimate(double spacing, const Vec3& count) {
     MoldEstimate e{};
@@ -68,8 +73,8 @@ MoldEstimate block_estimate(double spacing, const Vec3& count) {
     const double edges = x * (y + 1) * (z + 1) + y * (x + 1) * (z + 1) + z * (x + 1) * (y + 1);
     const double faces = x * y * (z + 1) + y * z * (x + 1) + z * x * (y + 1);
     e.connections = edges + 2 * faces;
-    e.bytes = kBytesParticle * e.particles + (kBytesCell + kBytesShare) * e.active_cells +
-              kBytesPoint * 8 * (x * y + y * z + z * x);
+    e.bytes = kBytesParticle * e.particles + kBytesCell * e.active_cells +
+              kBytesFace * 2 * (x * y + y * z + z * x);
     return e;
 }
 
@@ -103,9 +108,7 @@ MoldEstimate shape_estimate(const TriMesh& mesh, const MoldFrame& frame) {
     e.active_cells = std::min(dilated(0.5 * off_plane), count.prod());
     e.particles = std::min(dilated(0.5 + 0.5 * off_plane), (count.array() + 1).prod());
     e.connections = 9 * e.active_cells + 4 * (e.particles - e.active_cells);
-    e.bytes = kBytesParticle * e.particles + (kBytesCell + kBytesShare) * e.active_cells +
-              kBytesPoint * 4 * faces +
-              static_cast<double>(mesh.position.size() + mesh.triangle.size()) * 24;
+    e.bytes = kBytesParticle * e.particles + kBytesCell * e.active_cells + kBytesFace * faces;
     return e;
 }
 
@@ -126,22 +129,32 @@ MoldEstimate estimate_mold(const TriMesh& mesh, const MoldSettings& settings) {
 void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings) {
     const MoldEstimate e = estimate_mold(mesh, settings);
     const Vec3 count = cells_over(surface_box(mesh), spacing_for(mesh, settings));
-    const double cells = count.prod();
-    const double gib = 1024.0 * 1024.0 * 1024.0;
-    // Ids have 31 bits.
-    const double most = std::min(static_cast<double>(settings.cell_limit), 1e9);
-    if (cells > most) {
-        fail(ExitCode::resources,
-             "refused to mold: {:.0f} x {:.0f} x {:.0f} = {:.4g} cells of {:.4g} m (about "
-             "{:.3g} GiB) are more than the limit of {:.4g} cells; use a larger spacing",
-             count.x(), count.y(), count.z(), cells, e.spacing, e.bytes / gib, most);
+    const double cells = count.prod(), making = e.bytes + kBytesMaking * e.particles;
+    const auto text = [](double n) {
+        return n > kTold ? "over " + count_text(kTold) : count_text(n);
+    };
+    const auto refuse = [&](const std::string& sentence) {
+        fail(ExitCode::resources, "refused to mold: {} x {} x {} = {} cells of {}{}",
+             text(count.x()), text(count.y()), text(count.z()), text(cells), length_text(e.spacing),
+             sentence);
+    };
+    if (cells > kMostCells) {
+        refuse(fmt::format(" are more than the {} that a mold can have: use a larger spacing",
+                           count_text(kMostCells)));
+    }
+    const double limit = static_cast<double>(settings.cell_limit);
+    if (cells > limit) {
+        refuse(
+            fmt::format(", of which about {} hold matter and take {}, are more than [mold] "
+                        "cell_limit = {}: use a larger spacing, or set cell_limit higher",
+                        count_text(e.active_cells), bytes_text(making), count_text(limit)));
     }
     const double memory = whole_memory();
-    if (e.bytes > memory) {
-        fail(ExitCode::resources,
-             "refused to mold: about {:.4g} cells of {:.4g} m need {:.3g} GiB, more than the "
-             "{:.3g} GiB available; use a larger spacing",
-             e.active_cells, e.spacing, e.bytes / gib, memory / gib);
+    if (making > memory) {
+        refuse(
+            fmt::format(" need about {}, more than the {} of memory that there is: use a larger "
+                        "spacing",
+                        bytes_text(making), bytes_text(memory)));
     }
 }
 
