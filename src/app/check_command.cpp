@@ -12,6 +12,7 @@
 #include "pipeline/accuracy.h"
 #include "pipeline/body_look.h"
 #include "pipeline/cost.h"
+#include "pipeline/folded_bodies.h"
 #include "pipeline/run_record.h"
 
 namespace swage {
@@ -105,11 +106,16 @@ std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
 void add_matter(Lines& lines, const SceneSpec& scene, const std::vector<InputMesh>& input,
                 const RunCost& cost) {
     const char* about = cost.counted ? "" : "about ";
-    const auto each = [&](const char* name, const auto& value) {
-        for (std::size_t b = 0; b < scene.body.size(); ++b) {
-            for (const std::string& one : value(b)) {
-                lines.add(name, (b == 0 ? "" : scene.body[b].name + ": ") + one);
-            }
+    const std::vector<std::string> name = body_names(scene);
+    const auto each = [&](const char* what, const auto& value) {
+        std::vector<std::vector<std::string>> texts;
+        for (std::size_t b = 0; b < scene.body.size(); ++b) texts.push_back(value(b));
+        for (const FoldedText& one : folded(texts)) {
+            const bool is_work_piece = one.body.back() == 0;
+            const bool is_one = one.body.size() == 1;
+            lines.add(what, is_work_piece ? one.text
+                                          : fmt::format("{}{}: {}", bodies_text(name, one.body),
+                                                        is_one ? "" : ", each", one.text));
         }
     };
     using Texts = std::vector<std::string>;
@@ -162,7 +168,8 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     lines.add("steps", range_text(cost.steps, count_text));
     lines.add("memory", fmt::format("about {}, of which the matter takes {}",
                                     bytes_text(cost.memory_bytes), bytes_text(cost.mold.bytes)));
-    lines.add("disk", "about " + bytes_text(cost.disk_bytes));
+    lines.add("disk", fmt::format("{} to {}, by how much is kept to go on from",
+                                  bytes_text(cost.least_disk_bytes), bytes_text(cost.disk_bytes)));
     lines.add("time", range_text(cost.seconds, seconds_text) +
                           (cost.hangs_on.empty() ? "" : ", depending on " + cost.hangs_on));
     for (const std::string& note : cost.note) lines.add("note", note);

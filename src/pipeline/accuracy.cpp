@@ -20,8 +20,6 @@ namespace {
 // torsion 6.87 % and 1.93 % (the bar); both fall with the square.
 constexpr double kBending = 0.91, kTorsion = 1.24;
 
-constexpr int kMostAcross = 1'000'000'000;  // cells in all of a mold
-
 // With which the spacing resolves it [J/m2].
 double toughness_for(const Material& material, double spacing) {
     return kLeastReach * spacing * material.strength * material.strength / material.young_modulus;
@@ -51,13 +49,19 @@ Resolved resolved_strength(const Material& material, double spacing, double cell
 }
 
 std::string strength_warning(const Material& material, double spacing, double cells,
-                             const std::string& section) {
+                             const std::string& section, double most_across) {
     const Resolved resolved = resolved_strength(material, spacing, cells);
     if (resolved.whole()) return "";
-    const std::string finer = resolved.cells_for_whole < kMostAcross
-                                  ? fmt::format("{} across = {} would suffice, or at this one",
-                                                section, resolved.cells_for_whole)
-                                  : "no cell size is fine enough; at this one it takes";
+    std::string finer = "no cell size is fine enough; at this one it takes";
+    if (resolved.cells_for_whole <= most_across && resolved.cells_for_whole < kMostAcross) {
+        finer = fmt::format("{} across = {} would suffice, or at this one", section,
+                            resolved.cells_for_whole);
+    } else if (resolved.cells_for_whole < kMostAcross) {
+        finer = fmt::format(
+            "no lattice within its cell_limit is fine enough ({} across = {} would be); at this "
+            "one it takes",
+            section, resolved.cells_for_whole);
+    }
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
         "breaks at {} instead of {}; {} a toughness of {}",

@@ -25,8 +25,12 @@ struct Resolved {
     bool whole() const { return cells_for_whole == 0; }
 };
 Resolved resolved_strength(const Material& material, double spacing, double cells);
-// Empty where it is resolved, or nothing breaks. `section`: of the scene, that says how fine.
+inline constexpr double kMostAcross = 1e9;  // cells in all of a mold
+
+// Empty where it is resolved, or nothing breaks. `section`: of the scene, that says how fine;
+// `most_across`: the most cells over the thinnest side that the mold may have.
 std::string strength_warning(const Material& material, double spacing, double cells,
-                             const std::string& section = "[mold]");
+                             const std::string& section = "[mold]",
+                             double most_across = kMostAcross);
 
 }  // namespace swage

@@ -7,13 +7,17 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "base/text.h"
 #include "base/whole.h"
 #include "machines/legs.h"
+#include "mold/prepare.h"
 #include "pipeline/accuracy.h"
+#include "pipeline/counted_matter.h"
 #include "pipeline/disk_cost.h"
+#include "pipeline/folded_bodies.h"
 #include "pipeline/free_room.h"
-#include "pipeline/probes.h"
+#include "pipeline/memory_cost.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
 #include "pipeline/stiffness_note.h"
@@ -29,53 +33,61 @@ constexpr int kSampledFrames = 200;        // of the first stage, for how far it
 constexpr double kWhole = 0.01;            // of a layer of cells: less is as good as whole
 constexpr double kManyLayers = 20;         // of which the outermost hardly count
 constexpr double kThin = 0.3;              // of the box's thinnest side
-constexpr double kBytesPerParticle = 500;  // beside the aggregate: solver, mount, skin
-constexpr double kBytesPerVertex = 600;
 constexpr double kPointsPerFace = 4;       // of contact
 constexpr double kParticlesForTwo = 2048;  // from which on a second core helps
 constexpr double kVerticesPerFace = 6;     // of a boundary, a cell's face: four, and its steps
-constexpr double kDividedVerticesPerFace = 2.5;  // of a face that is divided to follow the matter
-constexpr double kProgramBytes = 80e6, kDrawingBytes = 65e6;  // libraries and their buffers
+// Triangles that one becomes whose sides are halved to p, q and r parts, over (p q r)^(2/3); none
+// is smaller than as makes so many vertices of a face.
+constexpr double kDividedTriangles = 1.17, kDividedVerticesPerFace = 2.5;
 // Addresses beside that memory and those of threads.
 constexpr double kDrawingAddresses = 550e6;
 constexpr double kLongestRun = 30 * 86400.0;
-constexpr double kFarShorter = 4;          // a step than a body needs
-constexpr double kFarMore = 10;            // steps than explicit ones
-constexpr double kCountedCells = 300'000;  // molded for real by count_cost
+constexpr double kFarShorter = 4;  // a step than a body needs
+constexpr double kFarMore = 10;    // steps than explicit ones
+// Cells, over those that are to be counted, before it is given up: of so few a body may have no
+// matter, and a machine's part no hold.
+constexpr double kCountedInVain = 10;
+// Of a full lattice: neither slivers nor damping, which takes up to 4 times as many.
+constexpr double kStepsPerCrossing = 2.1;
 
-// The stable step of a full lattice: neither slivers nor damping.
+// What a cell's fastest swing takes, that of pressure waves (P-wave modulus).
 double lattice_steps_per_second(const BodySpec& body, double spacing, const SimSettings& sim) {
     double wave_speed = 0;
     for (const Material* m : body.materials()) {
-        wave_speed = std::max(wave_speed, std::sqrt(m->young_modulus / m->density));
+        const double nu = m->poisson_ratio;
+        const double modulus = m->young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+        wave_speed = std::max(wave_speed, std::sqrt(modulus / m->density));
     }
-    return 2.5 * wave_speed / spacing / sim.step_safety;
+    return kStepsPerCrossing * wave_speed / spacing / sim.step_safety;
 }
 
 // Of a mesh as it is mounted, divided where its edges are long.
 double mounted_vertices(const TriMesh& mesh, const SkinSettings& skin, double spacing) {
     double vertices = static_cast<double>(mesh.position.size());
+    const double longest = kLongestSkinEdge * spacing;
     for (std::size_t t = 0; skin.divide && t < mesh.triangle.size(); ++t) {
         const auto& [a, b, c] = mesh.triangle[t];
         const Vec3 u = mesh.position[b] - mesh.position[a], v = mesh.position[c] - mesh.position[a];
-        const double longest = std::max({u.norm(), v.norm(), (v - u).norm()});
-        if (longest <= kLongestSkinEdge * spacing) continue;
-        vertices += kDividedVerticesPerFace * 0.5 * u.cross(v).norm() / (spacing * spacing);
+        double parts = 1;
+        for (double side : {u.norm(), v.norm(), (v - u).norm()}) {
+            for (; side > longest; side /= 2) parts *= 2;
+        }
+        if (parts == 1) continue;
+        const double most = kDividedVerticesPerFace * 0.5 * u.cross(v).norm() / (spacing * spacing);
+        const double made = 0.5 * (kDividedTriangles * portable::pow(parts, 2. / 3) - 1);
+        vertices += std::min(std::max(most, 0.5), made);
     }
     return vertices;
 }
 
-// Of the body with the shortest stable step.
-double steps_per_second(const SceneSpec& scene, const RunCost& cost,
-                        const std::vector<Aggregate>& matter, const SimSettings& sim) {
+// Of the body with the shortest stable step. `counted`: or null.
+double steps_per_second(const SceneSpec& scene, const RunCost& cost, const CountedMatter* counted,
+                        const SimSettings& sim) {
     double most = 0;
-    for (const Aggregate& body : matter)
-        most = std::max(most, explicit_steps_per_second(body, sim));
-    if (matter.empty()) {
-        for (std::size_t b = 0; b < scene.body.size(); ++b) {
-            most =
-                std::max(most, lattice_steps_per_second(scene.body[b], cost.body[b].spacing, sim));
-        }
+    for (std::size_t b = 0; b < scene.body.size(); ++b) {
+        most = std::max(most, counted != nullptr ? counted->steps_per_second(b, sim)
+                                                 : lattice_steps_per_second(
+                                                       scene.body[b], cost.body[b].spacing, sim));
     }
     return most;
 }
@@ -94,27 +106,14 @@ double cells_across(const TriMesh& mesh, MoldKind kind, const MoldEstimate& mold
     return kind == MoldKind::block || across > layers - kRounding ? layers : across;
 }
 
-std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                               const std::vector<Aggregate>& matter) {
-    std::vector<NamedMatter> named;
-    for (std::size_t b = 0; b < matter.size(); ++b) {
-        const BodySpec& body = scene.body[b];
-        const bool is_mesh = scene.skin.kind != SkinKind::boundary;
-        const TriMesh& shown = is_mesh ? input[b].mesh : input[b].to_mold();
-        named.push_back(
-            {body.name, &matter[b], box_at_start(body.start, input[b].to_mold(), shown)});
-    }
-    return named;
-}
-
 // As much as this many cells of the work-piece pressed as tools do.
 double softest_give(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                    const std::vector<Aggregate>& matter) {
+                    const CountedMatter* counted) {
     double most = 0;
     for (const StageSpec& stage : scene.stage) {
         if (stage.machine.tool.empty()) continue;
         const double share =
-            matter.empty() ? 1 : stiffness_share_at_tools(stage, named(scene, input, matter));
+            counted == nullptr ? 1 : stiffness_share_at_tools(stage, counted->named(scene, input));
         for (const ToolSpec& tool : stage.machine.tool) {
             const double asked = stage.sim.stiffness_of_contacts(tool.contact_stiffness);
             most = std::max(most, 1 / (asked * share));
@@ -153,11 +152,11 @@ std::string what_time_hangs_on(const SceneSpec& scene) {
     return all.empty() ? "how soon it comes to rest" : joined(all, " and ");
 }
 
-// `matter`: of each body, or empty. `equilibria`: of the first stage, 0: not known.
+// `counted`: or null. `equilibria`: of the first stage, 0: not known.
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
-            const RunOptions& options, const std::vector<Aggregate>& matter, long equilibria) {
+            const RunOptions& options, const CountedMatter* counted, long equilibria) {
     cost.frames = frame_count(scene);
-    cost.tool_give = softest_give(scene, input, matter);
+    cost.tool_give = softest_give(scene, input, counted);
     cost.steps = cost.seconds = {};
     double way = 0;  // [byte], of the machine's, one after another
     WorkLoad load{.particles = cost.mold.particles,
@@ -169,13 +168,12 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     for (const StageSpec& stage : scene.stage) {
         const bool moves = in_motion(stage.sim.solver);
         way = std::max(way, bytes_of_way(stage.machine, stage.frames, moves));
-        if (moves) load.steps_per_second = steps_per_second(scene, cost, matter, stage.sim);
-        const bool counted = &stage == &scene.stage.front();
-        const StageTime time = stage_time(scene, stage, load, counted ? equilibria : 0);
+        if (moves) load.steps_per_second = steps_per_second(scene, cost, counted, stage.sim);
+        const bool is_first = &stage == &scene.stage.front();
+        const StageTime time = stage_time(scene, stage, load, is_first ? equilibria : 0);
         cost.steps.add(time.steps);
         cost.seconds.add(time.seconds);
     }
-    const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
     double vertices = 0;
     for (std::size_t b = 0; b < input.size(); ++b) {
         vertices += scene.skin.kind == SkinKind::boundary
@@ -185,13 +183,15 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     }
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;
-    cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
-                        vertices * kBytesPerVertex + way +
-                        (options.draw ? kDrawingBytes + pixels * 60 : 0);
-    cost.disk_bytes =
-        disk_bytes(scene, input,
-                   {double(cost.frames), stills, cost.mold.active_cells, cost.mold.particles,
-                    cost.mold.bytes, vertices, cost.seconds.most});
+    cost.memory_bytes = memory_bytes(scene, input,
+                                     {cost.mold.bytes, cost.mold.particles, cost.mold.active_cells,
+                                      load.surface_points / kPointsPerFace, vertices, way},
+                                     stills > 0);
+    const DiskShare disk = {double(cost.frames), stills,          cost.mold.active_cells,
+                            cost.mold.particles, cost.mold.bytes, vertices,
+                            cost.seconds.most};
+    cost.disk_bytes = disk_bytes(scene, input, disk);
+    cost.least_disk_bytes = least_disk_bytes(scene, input, disk);
     const double drawing = drawing_time(scene.render, stills);
     cost.seconds.add(writing_time(scene, cost.frames, cost.disk_bytes, cost.mold.particles));
     cost.hangs_on = cost.seconds.is_narrow() ? "" : what_time_hangs_on(scene);
@@ -202,20 +202,89 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     if (cost.mold.particles > kParticlesForTwo) cost.seconds.most /= std::sqrt(cores);
 }
 
-// Of a body's mesh and of its strength.
-void add_warnings(const SceneSpec& scene, std::size_t b, const InputMesh& input, RunCost& cost) {
-    StartWarnings& told = cost.warning;
-    told.mesh.insert(told.mesh.end(), input.finding.begin(), input.finding.end());
-    const std::string section =
-        b == 0 ? "[mold]" : fmt::format("[[body]] \"{}\"", scene.body[b].name);
-    for (const Material* material : scene.body[b].materials()) {
-        const std::string strength =
-            strength_warning(*material, cost.body[b].spacing, cost.body[b].across, section);
-        // Bodies and insets may be of one material.
-        const bool known =
-            std::find(told.strength.begin(), told.strength.end(), strength) != told.strength.end();
-        if (!strength.empty() && !known) told.strength.push_back(strength);
+// Of the bodies' meshes and of their strength.
+void add_warnings(const SceneSpec& scene, const std::vector<InputMesh>& input, RunCost& cost) {
+    const std::vector<std::string> name = body_names(scene);
+    cost.warning.mesh = warnings_of_meshes(scene, input);
+    std::vector<std::vector<std::string>> strength(scene.body.size());
+    const std::string section = "[mold]";
+    for (std::size_t b = 0; b < scene.body.size(); ++b) {
+        const BodyCost& body = cost.body[b];
+        for (const Material* material : scene.body[b].materials()) {
+            const std::string one =
+                strength_warning(*material, body.spacing, body.across, section, body.most_across);
+            if (!one.empty()) strength[b].push_back(one);
+        }
     }
+    for (FoldedText& one : folded(strength)) {
+        const std::size_t at = one.text.find(section), first = one.body.front();
+        if (first > 0 && at != std::string::npos) {
+            one.text.replace(at, section.size(), fmt::format("[[body]] \"{}\"", name[first]));
+        }
+        if (one.body.size() > 1) one.text += fmt::format(" ({})", bodies_text(name, one.body));
+        cost.warning.strength.push_back(std::move(one.text));
+    }
+}
+
+MoldEstimate sum_of(const std::vector<MoldEstimate>& bodies) {
+    MoldEstimate sum = bodies.front();
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+        sum.active_cells += bodies[b].active_cells;
+        sum.particles += bodies[b].particles;
+        sum.connections += bodies[b].connections;
+        sum.bytes += bodies[b].bytes;
+    }
+    return sum;
+}
+
+// Of the first stage, as straight as the spacing that is asked for has it.
+long equilibria_of(const StageSpec& first, const Machine& machine, const CountedMatter& counted,
+                   double spacing) {
+    const Legs legs = stage_legs(first, machine, std::min(first.frames, kSampledFrames), spacing);
+    if (in_motion(first.sim.solver)) return 0;
+    const std::vector<Drive> drives = stage_drives(first, machine, legs.leg, 1);
+    const auto along = [&](const Aggregate& matter) {
+        return std::max<long>(first.frames,
+                              equilibria_along(matter, machine.apparatus, first.sim, drives));
+    };
+    if (counted.coarser[0] == 1) return along(counted.matter[0]);
+    // NOTE: no tool goes further than a cell from one to the next: for that alone its size counts.
+    Aggregate finer = counted.matter[0];
+    finer.lattice.spacing = spacing;
+    return along(finer);
+}
+
+// The matter, and the first machine at it.
+void count(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
+           const RunOptions& options, std::vector<MoldEstimate> mold,
+           const std::vector<double>& coarser) {
+    const CountedMatter made = make_matter(scene, input, mold, coarser, cost.warning.mold);
+    cost.counted = made.is_whole();
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        mold[b] = counted(made.matter[b], input[b], scene.body[b].mold, mold[b], coarser[b]);
+        cost.body[b].cells = mold[b].active_cells;
+    }
+    cost.mold = sum_of(mold);
+    const std::vector<NamedMatter> bodies = made.named(scene, input);
+    cost.warning.bodies = warnings_of_bodies(scene, bodies);
+    const std::string steps = step_note(scene, made);
+    if (!steps.empty()) cost.note.push_back(steps);
+    const StageSpec& first = scene.stage.front();
+    const std::vector<Material> beside = materials_beside(bodies);
+    const Box skin = bodies.front().skin;
+    const Aggregate& work_piece = made.matter.front();
+    const Machine machine = stage_machine(first, work_piece, beside, skin);
+    cost.place = machine_places(scene, machine, work_piece, beside, skin);
+    cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
+    for (std::string& amiss : tool_overlaps(machine, bodies, in_motion(first.sim.solver))) {
+        cost.warning.bodies.push_back(std::move(amiss));
+    }
+    for (const StageSpec& stage : scene.stage) {
+        const std::string note = stiffness_note(stage, bodies);
+        if (!note.empty()) cost.warning.bodies.push_back(stage.name + ": " + note);
+    }
+    add_up(cost, scene, input, options, &made,
+           equilibria_of(first, machine, made, cost.work_piece().spacing));
 }
 
 }  // namespace
@@ -236,83 +305,58 @@ int frame_count(const SceneSpec& scene) {
 RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
                       const RunOptions& options) {
     RunCost cost;
+    std::vector<MoldEstimate> mold;
     for (std::size_t b = 0; b < input.size(); ++b) {
-        const MoldEstimate mold = estimate_mold(input[b].to_mold(), scene.body[b].mold);
-        const double across = cells_across(input[b].to_mold(), scene.body[b].mold.kind, mold);
-        cost.body.push_back({mold.spacing, mold.active_cells, across,
-                             thickness_of(input[b].to_mold(), mold.spacing, across)});
-        add_warnings(scene, b, input[b], cost);
-        if (b == 0) {
-            cost.mold = mold;
-            continue;
-        }
-        cost.mold.active_cells += mold.active_cells;
-        cost.mold.particles += mold.particles;
-        cost.mold.connections += mold.connections;
-        cost.mold.bytes += mold.bytes;
+        refuse_too_many_cells(input[b].to_mold(), scene.body[b].mold);
+        mold.push_back(estimate_mold(input[b].to_mold(), scene.body[b].mold));
+        const double across =
+            cells_across(input[b].to_mold(), scene.body[b].mold.kind, mold.back());
+        cost.body.push_back({mold[b].spacing, mold[b].active_cells, across,
+                             thickness_of(input[b].to_mold(), mold[b].spacing, across), 0});
+        const double box = mold[b].cell_count.cast<double>().prod();
+        const auto limit = static_cast<double>(scene.body[b].mold.cell_limit);
+        cost.body[b].most_across = std::floor(across * portable::pow(limit / box, 1. / 3));
     }
-    add_up(cost, scene, input, options, {}, 0);
+    add_warnings(scene, input, cost);
+    cost.mold = sum_of(mold);
+    add_up(cost, scene, input, options, nullptr, 0);
     note_more_steps(scene, cost);
     return cost;
 }
 
 RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                   const RunOptions& options) {
-    RunCost cost = estimate_cost(scene, input, options);
-    if (cost.mold.active_cells > kCountedCells || scene.stage.empty()) return cost;
-    std::vector<Aggregate> matter;
-    cost.counted = true;
-    cost.mold.active_cells = cost.mold.particles = cost.mold.connections = cost.mold.bytes = 0;
+                   const RunOptions& options, double most) {
+    const RunCost estimate = estimate_cost(scene, input, options);
+    if (scene.stage.empty()) return estimate;
+    std::vector<MoldEstimate> mold;
+    std::vector<double> across;
     for (std::size_t b = 0; b < input.size(); ++b) {
-        const BodySpec& body = scene.body[b];
-        std::vector<std::string> findings;
-        matter.push_back(mold_body(input[b], body, findings));
-        for (const std::string& warning : warnings_of_mold(body.name, input.size() > 1, findings)) {
-            cost.warning.mold.push_back(warning);
+        mold.push_back(estimate_mold(input[b].to_mold(), scene.body[b].mold));
+        across.push_back(estimate.body[b].across);
+    }
+    for (const bool again : {false, true}) {
+        const std::vector<double> coarser =
+            coarser_by(mold, across, again ? kCountedInVain * most : most);
+        const bool is_whole = *std::max_element(coarser.begin(), coarser.end()) == 1;
+        try {
+            RunCost cost = estimate;
+            count(cost, scene, input, options, mold, coarser);
+            return cost;
+        } catch (const Error& error) {
+            // What a machine has against such different cells it has against any.
+            if (is_whole || (again && error.code() == ExitCode::scene)) throw;
         }
-        mount_probes(body, input[b].to_mold(), matter[b]);  // refuses those beside it
-        place_at_start(body.start, input[b].to_mold(), matter[b]);
-        cost.body[b].cells = static_cast<double>(matter[b].cell_fill.size());
-        cost.mold.active_cells += cost.body[b].cells;
-        cost.mold.particles += static_cast<double>(matter[b].particle_count());
-        cost.mold.connections += static_cast<double>(matter[b].connection_count());
-        cost.mold.bytes += static_cast<double>(matter[b].bytes());
     }
-    const std::vector<NamedMatter> bodies = named(scene, input, matter);
-    cost.warning.bodies = warnings_of_bodies(scene, bodies);
-    const std::string steps = step_note(scene, matter);
-    if (!steps.empty()) cost.note.push_back(steps);
-    const StageSpec& first = scene.stage.front();
-    const std::vector<Material> beside = materials_beside(bodies);
-    const Box skin = bodies.front().skin;
-    const Machine machine = stage_machine(first, matter[0], beside, skin);
-    cost.place = machine_places(scene, machine, matter[0], beside, skin);
-    cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
-    for (std::string& amiss : tool_overlaps(machine, bodies, in_motion(first.sim.solver))) {
-        cost.warning.bodies.push_back(std::move(amiss));
-    }
-    for (const StageSpec& stage : scene.stage) {
-        const std::string note = stiffness_note(stage, bodies);
-        if (!note.empty()) cost.warning.bodies.push_back(stage.name + ": " + note);
-    }
-    const Legs legs = stage_legs(first, machine, std::min(first.frames, kSampledFrames), matter[0]);
-    const long equilibria =
-        in_motion(first.sim.solver)
-            ? 0
-            : std::max<long>(first.frames,
-                             equilibria_along(matter[0], machine.apparatus, first.sim,
-                                              stage_drives(first, machine, legs.leg, 1)));
-    add_up(cost, scene, input, options, matter, equilibria);
-    return cost;
+    return estimate;
 }
 
-std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
+std::string step_note(const SceneSpec& scene, const CountedMatter& counted) {
     for (const StageSpec& stage : scene.stage) {
         const Solver solver = stage.sim.solver;
         if (!follows_all_motion(solver)) continue;
         std::vector<double> steps;
-        for (const Aggregate& body : matter) {
-            steps.push_back(explicit_steps_per_second(body, stage.sim));
+        for (std::size_t b = 0; b < counted.matter.size(); ++b) {
+            steps.push_back(counted.steps_per_second(b, stage.sim));
         }
         const auto most = std::max_element(steps.begin(), steps.end());
         std::string others;
@@ -347,6 +391,7 @@ Json cost_json(const RunCost& cost) {
             {"matter_bytes", cost.mold.bytes},
             {"memory_bytes", cost.memory_bytes},
             {"disk_bytes", cost.disk_bytes},
+            {"disk_bytes_least", cost.least_disk_bytes},
             {"frames", cost.frames},
             {"steps", cost.steps.middle()},
             {"steps_least", cost.steps.least},
@@ -379,11 +424,11 @@ void refuse_excess(const RunCost& cost, const RunOptions& options) {
              "--no-render and fewer --threads need less (--force runs it anyway)",
              bytes_text(addresses), bytes_text(free_addresses()));
     }
-    if (cost.disk_bytes > disk) {
+    if (cost.least_disk_bytes > disk) {
         fail(ExitCode::resources,
              "the run would write about {}, and {} of disk is free: fewer frames or a smaller "
              "[render] size need less (--force runs it anyway)",
-             bytes_text(cost.disk_bytes), bytes_text(disk));
+             bytes_text(cost.least_disk_bytes), bytes_text(disk));
     }
     if (cost.seconds.least > kLongestRun) {
         fail(ExitCode::resources,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mold/mold.h"
+#include "pipeline/counted_matter.h"
 #include "pipeline/json.h"
 #include "pipeline/machine_place.h"
 #include "pipeline/run_options.h"
@@ -21,6 +22,7 @@ struct BodyCost {
     double cells = 0;      // that hold matter
     double across = 0;     // the thinnest side of its box, in cells: 4.2, where it lies in 5 layers
     double thickness = 0;  // of it, or of its thin parts, in cells: about
+    double most_across = 0;  // that its cell_limit allows
 
     // Most of it is far thinner than its box.
     bool has_thin_parts() const { return thickness < across; }
@@ -32,14 +34,15 @@ struct BodyCost {
 struct RunCost {
     MoldEstimate mold;  // sums over all bodies; spacing and cell_count are the work-piece's
     std::vector<BodyCost> body;
-    bool counted = false;             // the mold was made, so its numbers are no estimate
+    bool counted = false;             // the mold was made as it is, so its numbers are no estimate
     double tool_give = 0;             // what the softest tool gives way by, in cells; 0: no tools
     int frames = 0;                   // stills, the start included
     CostRange steps;                  // relaxation iterations and steps of motion
     CostRange seconds;                // of simulation, skins, files and drawing
     std::string hangs_on;             // what makes that more or less; empty: nothing much
     double memory_bytes = 0;          // at the peak, about
-    double disk_bytes = 0;            // of the run directory, about
+    double disk_bytes = 0;            // of the run directory, when it holds the most, about
+    double least_disk_bytes = 0;      // without what it keeps to go on from
     std::vector<std::string> note;    // of the first machine at the work-piece; of steps
     std::vector<MachinePlace> place;  // of each stage; none where the mold was not made
     // `mold` and `bodies` only where the mold was made; `bodies` tells of what the first machine's
@@ -51,17 +54,20 @@ struct RunCost {
 
 int frame_count(const SceneSpec& scene);
 
-// From sizes alone, at once.
+// From sizes alone, at once. Throws as refuse_too_many_cells().
 RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
                       const RunOptions& options);
 
-// The same with molds of moderate size made for real and the first machine set up at it, which
-// finds the mistakes that only show there. Throws what these throw.
+inline constexpr double kCountedCells = 300'000;
+
+// The same with molds made for real, and the first machine set up at it, which finds the mistakes
+// that only show there. Of more than about `most` cells coarser ones are made in their stead
+// (pipeline/counted_matter.h). Throws what these throw.
 RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                   const RunOptions& options);
+                   const RunOptions& options, double most = kCountedCells);
 
 // Which of several bodies makes explicit steps far shorter than others need; empty: none does.
-std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter);
+std::string step_note(const SceneSpec& scene, const CountedMatter& counted);
 
 Json cost_json(const RunCost& cost);
 

@@ -25,4 +25,9 @@ double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& in
 // [byte], when the directory holds the most.
 double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, DiskShare of);
 
+// [byte], of what no run can do without: where there is no room for what is kept to go on from, it
+// goes on without that. Nothing has broken.
+double least_disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                        const DiskShare& of);
+
 }  // namespace swage

@@ -12,6 +12,7 @@
 #include "pipeline/checkpoint.h"
 #include "pipeline/cost.h"
 #include "pipeline/disk_reserve.h"
+#include "pipeline/folded_bodies.h"
 #include "pipeline/kept_run.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage.h"
@@ -31,23 +32,40 @@ Reached molded(const SimulationContext& context, StartWarnings at_start) {
     const std::vector<InputMesh>& input = context.input;
     Reached reached;
     std::vector<WorkPiece>& bodies = reached.bodies;
+    std::vector<std::vector<std::string>> found, made, divided;
     for (std::size_t b = 0; b < input.size(); ++b) {
-        {
-            const auto lap = context.watch.lap("mold");
-            bodies.push_back(make_work_piece(input[b], context.scene.body[b], context.scene.skin));
-        }
-        for (const std::string& warning :
-             warnings_of_mold(bodies[b].name, input.size() > 1, bodies[b].finding)) {
-            log_warning("{}", warning);
-            at_start.mold.push_back(warning);
-        }
+        const auto lap = context.watch.lap("mold");
+        bodies.push_back(make_work_piece(input[b], context.scene.body[b], context.scene.skin));
         const Aggregate& matter = bodies[b].matter;
+        found.push_back(bodies[b].finding);
+        made.push_back(
+            {fmt::format("{} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",
+                         matter.cell_fill.size(), 1e3 * matter.lattice.spacing,
+                         matter.particle_count(), matter.connection_count(), matter.mass())});
+        divided.emplace_back();
+        if (const std::string text = division_text(bodies[b], input[b]); !text.empty()) {
+            divided.back().push_back(text);
+        }
         reached.matter.push_back(matter_json(matter));
-        log_info("{}: {} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",
-                 input.size() == 1 ? "molded" : "molded " + bodies[b].name, matter.cell_fill.size(),
-                 1e3 * matter.lattice.spacing, matter.particle_count(), matter.connection_count(),
-                 matter.mass());
     }
+    const std::vector<std::string> name = body_names(context.scene);
+    for (const FoldedText& one : folded(made)) {
+        if (input.size() == 1) {
+            log_info("molded: {}", one.text);
+        } else {
+            log_info("molded {}{}: {}", bodies_text(name, one.body),
+                     one.body.size() == 1 ? "" : ", each", one.text);
+        }
+    }
+    for (const FoldedText& one : folded(divided)) {
+        if (input.size() > 1) {
+            log_info("{}: {}", bodies_text(name, one.body), one.text);
+        } else {
+            log_info("{}", one.text);
+        }
+    }
+    at_start.mold = folded_warnings(name, found);
+    for (const std::string& warning : at_start.mold) log_warning("{}", warning);
     at_start.bodies = warnings_of_bodies(context.scene, named(bodies));
     for (const auto* untold : {&at_start.strength, &at_start.bodies}) {
         for (const std::string& warning : *untold) log_warning("{}", warning);

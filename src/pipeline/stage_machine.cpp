@@ -85,11 +85,10 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
     return mistakes;
 }
 
-Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames,
-                const Aggregate& work_piece, double begin) {
+Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames, double spacing,
+                double begin) {
     return at_stage(stage, [&] {
-        return legs_of(machine, frames, kLegSlack * work_piece.lattice.spacing,
-                       in_motion(stage.sim.solver), begin);
+        return legs_of(machine, frames, kLegSlack * spacing, in_motion(stage.sim.solver), begin);
     });
 }
 

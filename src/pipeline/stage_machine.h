@@ -22,10 +22,11 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
 std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
                                            const Box& skin);
 
-// Its way over so many frames, as straight as that matter's spacing asks for, and its drives along
-// it (machines/legs.h). Throw SceneError where an expression has no value at some time.
-Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames,
-                const Aggregate& work_piece, double begin = 0);
+// Its way over so many frames, as straight as that spacing of its matter asks for [m], and its
+// drives along it (machines/legs.h). Throw SceneError where an expression has no value at some
+// time.
+Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames, double spacing,
+                double begin = 0);
 std::vector<Drive> stage_drives(const StageSpec& stage, const Machine& machine,
                                 const std::vector<Leg>& legs, int steps);
 

@@ -26,7 +26,7 @@ StageWay::StageWay(const StageSpec& stage, Machine& machine, const Aggregate& wo
 }
 
 void StageWay::set_out(double begin) {
-    legs_ = stage_legs(stage_, machine_, stage_.frames, work_piece_, begin);
+    legs_ = stage_legs(stage_, machine_, stage_.frames, work_piece_.lattice.spacing, begin);
     leg_ = 0;
     if (!machine_.apparatus.blade.empty()) steps_ = std::max(1, blade_steps(legs_.leg));
     way_ = legs_.leg.empty() ? std::vector<Drive>()

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/folded_bodies.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
 
@@ -14,6 +15,31 @@ std::vector<std::string> StartWarnings::all() const {
     all.insert(all.end(), strength.begin(), strength.end());
     all.insert(all.end(), bodies.begin(), bodies.end());
     return all;
+}
+
+std::vector<std::string> body_names(const SceneSpec& scene) {
+    std::vector<std::string> names;
+    for (const BodySpec& body : scene.body) names.push_back(body.name);
+    return names;
+}
+
+std::vector<std::string> warnings_of_meshes(const SceneSpec& scene,
+                                            const std::vector<InputMesh>& input) {
+    std::vector<std::vector<std::string>> findings;
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        const std::string file = scene.body[b].mesh.file.filename().string();
+        findings.emplace_back();
+        for (const std::string& one : input[b].finding) {
+            findings.back().push_back(file.empty() ? one : file + ": " + one);
+        }
+    }
+    std::vector<std::string> told;
+    const std::vector<std::string> name = body_names(scene);
+    for (FoldedText& one : folded(findings)) {
+        if (name.size() > 1) one.text += fmt::format(" ({})", bodies_text(name, one.body));
+        told.push_back(std::move(one.text));
+    }
+    return told;
 }
 
 std::vector<std::string> warnings_of_mold(const std::string& body, bool is_one_of_several,

@@ -22,6 +22,12 @@ struct StartWarnings {
 
 std::vector<NamedMatter> named(const std::vector<WorkPiece>& bodies);
 
+std::vector<std::string> body_names(const SceneSpec& scene);
+
+// Findings of the meshes as they are read.
+std::vector<std::string> warnings_of_meshes(const SceneSpec& scene,
+                                            const std::vector<InputMesh>& input);
+
 // Findings of a body's molding as warnings, with its name where it is one of several.
 std::vector<std::string> warnings_of_mold(const std::string& body, bool is_one_of_several,
                                           const std::vector<std::string>& findings);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "base/hash.h"
 #include "base/log.h"
@@ -17,6 +18,7 @@
 #include "mold/prepare.h"
 #include "pipeline/body_look.h"
 #include "pipeline/probes.h"
+#include "pipeline/start_warnings.h"
 #include "sim/cell_volume.h"
 #include "skin/boundary.h"
 #include "skin/broken_skin.h"
@@ -86,15 +88,6 @@ TriMesh inset_solid(const InsetSpec& spec, const InputMesh& input, const Box& bo
 TriMesh block_mesh(const TriMesh& mesh) {
     const Box box = box_of(mesh.position);
     return box_mesh(box.low, box.high);
-}
-
-TriMesh divided_skin(const TriMesh& mesh, const Aggregate& matter) {
-    TriMesh skin = divide_edges(mesh, kLongestSkinEdge * matter.lattice.spacing);
-    if (skin.triangle.size() != mesh.triangle.size()) {
-        log_info("skin: {} triangles divided into {}, with no edge longer than {} cells",
-                 mesh.triangle.size(), skin.triangle.size(), kLongestSkinEdge);
-    }
-    return skin;
 }
 
 // Makes it as heavy as that [kg].
@@ -169,9 +162,9 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
     const double longest = box_of(input.mesh.position).size().maxCoeff();
     if (!length && longest > kHuge) {
         input.finding.push_back(
-            fmt::format("{} is {} long, as the file's numbers are taken as metres: give its length "
+            fmt::format("it is {} long, as the file's numbers are taken as metres: give its length "
                         "with `length`",
-                        file.filename().string(), quantity_text(longest, Quantity::length)));
+                        quantity_text(longest, Quantity::length)));
     }
     input.report = check_mesh(input.mesh);
     return input;
@@ -180,7 +173,6 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
 InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle) {
     InputMesh input = read_mesh_as_it_is(spec.file, spec.length, crease_angle);
     log_info("{}: {}", spec.file.filename().string(), summary_line(input.report));
-    for (const std::string& finding : input.finding) log_warning("{}", finding);
     make_solid(input, kind, crease_angle);
     return input;
 }
@@ -194,15 +186,28 @@ TriMesh WorkPiece::deformed() const {
 
 std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
     std::vector<InputMesh> input;
+    const auto is_same = [](const BodySpec& a, const BodySpec& b) {
+        return a.mesh.file == b.mesh.file && a.mesh.length == b.mesh.length &&
+               a.mold.kind == b.mold.kind;
+    };
     for (const BodySpec& body : scene.body) {
-        input.push_back(read_input_mesh(body.mesh, body.mold.kind, scene.skin.crease_angle));
-        if (!body.gives_look || !hides_material(body, input.back().mesh)) continue;
-        input.back().finding.push_back(
-            fmt::format("{}: the mesh file says how it looks, so the look of the material is not "
-                        "seen: look = \"material\" beside file shows it",
-                        body.label()));
-        log_warning("{}", input.back().finding.back());
+        const auto known = std::find_if(scene.body.begin(), scene.body.end(),
+                                        [&](const BodySpec& one) { return is_same(one, body); });
+        const auto n = static_cast<std::size_t>(known - scene.body.begin());
+        if (n < input.size()) {
+            input.push_back(InputMesh(input[n]));
+        } else {
+            input.push_back(read_input_mesh(body.mesh, body.mold.kind, scene.skin.crease_angle));
+        }
     }
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        const BodySpec& body = scene.body[b];
+        if (!body.gives_look || !hides_material(body, input[b].mesh)) continue;
+        input[b].finding.emplace_back(
+            "the mesh file says how it looks, so the look of the material is not seen: "
+            "look = \"material\" beside file shows it");
+    }
+    for (const std::string& warning : warnings_of_meshes(scene, input)) log_warning("{}", warning);
     return input;
 }
 
@@ -278,7 +283,9 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
         piece.look = std::make_shared<const NewLook>(like);
         lay_boundary(piece);
     } else {
-        piece.skin = skin.divide ? divided_skin(input.mesh, piece.matter) : input.mesh;
+        piece.skin = skin.divide
+                         ? divide_edges(input.mesh, kLongestSkinEdge * piece.matter.lattice.spacing)
+                         : input.mesh;
         paint(piece.skin, body_look(body, input.mesh));
         color_inside(body, piece.skin);
         name_looks(piece.skin, piece.label);
@@ -292,6 +299,13 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     if (!stands || start.moves()) place_at_start(start, input.to_mold(), piece.matter);
     if (!stands) follow_matter(piece);
     return piece;
+}
+
+std::string division_text(const WorkPiece& piece, const InputMesh& input) {
+    const std::size_t before = input.mesh.triangle.size(), after = piece.skin.triangle.size();
+    if (piece.look || after == before) return {};
+    return fmt::format("skin: {} triangles divided into {}, with no edge longer than {} cells",
+                       before, after, kLongestSkinEdge);
 }
 
 WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin) {
@@ -311,6 +325,8 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     as_it_stands.mold.spacing = in_whole_layers(piece.matter.lattice.spacing,
                                                 surface_box(input.to_mold()).size().minCoeff());
     WorkPiece anew = make_work_piece(input, as_it_stands, skin);
+    const std::string divided = division_text(anew, input);
+    if (!divided.empty()) log_info("{}", divided);
     // Pressed, drawn or where its pieces lie in each other, matter takes up another volume.
     weigh(piece.matter.mass(), anew.matter);
     std::vector<Vec3> probed;

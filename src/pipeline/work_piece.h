@@ -38,10 +38,10 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
                              double crease_angle = kCreaseAngle);
 
 // The same, and makes sure that it can be molded. Logs one line always, and the account of a
-// repair.
+// repair, not what is found.
 InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle = kCreaseAngle);
 
-// The meshes of all bodies of a scene.
+// The meshes of all bodies of a scene, those of one file read once. Warns of what is found.
 std::vector<InputMesh> read_input_meshes(const SceneSpec& scene);
 
 // The body's matter, with its insets, as its mesh stands in its file. Throws as mold() does, of an
@@ -78,6 +78,9 @@ struct WorkPiece {
 // At its start: molded as its mesh stands in its file, then turned, moved and set in motion, so
 // that how it stands has no effect on how well it is resolved.
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin);
+
+// Empty where its skin is as its mesh came.
+std::string division_text(const WorkPiece& piece, const InputMesh& input);
 
 // Turns about the middle of the box of the mesh that it was molded from, moves and sets in motion.
 void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matter);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `swage check` foretells, and the run then holds.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <fstream>
 
 #include "geometry/box_mesh.h"
@@ -125,4 +128,67 @@ TEST_CASE("a tube's accuracy is told of the whole and of its wall, and as elasti
     put_text(scene, "[mesh]\nfile = \"tube.obj\"\n[material]\nname = \"copper" + rest);
     CHECK(run_swage({"check", scene.string()}).out.find("permanent deformation") !=
           std::string::npos);
+}
+
+TEST_CASE("check refuses more cells than a mold may have, as the run does, and says what to set") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 1);
+    for (const char* command : {"check", "run"}) {
+        const Outcome outcome =
+            run_swage({command, scene.string(), "--set", "mold.across=300"}, scratch.path());
+        INFO(outcome.out << outcome.err);
+        CHECK(outcome.code == 7);
+        CHECK(
+            outcome.err.find("are more than [mold] cell_limit = 50,000,000: use a larger spacing, "
+                             "or set cell_limit higher") != std::string::npos);
+    }
+}
+
+TEST_CASE("of many bodies that are alike each thing is said once, by check and by the run") {
+    const Scratch scratch;
+    put_small_scene(scratch.path());  // its mesh
+    put_text(scratch.path() / "open.obj", [&] {
+        std::string mesh = bytes_of(scratch.path() / "bar.obj");
+        mesh.resize(mesh.rfind("f "));  // a face is missing
+        return mesh + "usemtl none\n";
+    }());
+    const auto lines = [&](int bodies, const char* command) {
+        std::string text =
+            "[mesh]\nfile = \"open.obj\"\nat = [0, 0, 0]\n[material]\nname = \"glass\"\n"
+            "[mold]\nacross = 2\n";
+        for (int b = 1; b < bodies; ++b) {
+            text += fmt::format("[[body]]\nfile = \"open.obj\"\nat = [0, \"{} cm\", 0]\n", 5 * b);
+        }
+        text +=
+            "[[stage]]\nmachine = \"floor\"\nframes = 1\nduration = \"10 us\"\n"
+            "gravity = 9.81\n";
+        put_text(scratch.path() / "many.toml", text);
+        std::vector<std::string> words = {command, "many.toml"};
+        if (std::string(command) == "run") {
+            words.insert(words.end(), {"--no-render", "--fresh", "--out", "many"});
+        }
+        const Outcome outcome = run_swage(words, scratch.path());
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        return outcome.out + outcome.err;
+    };
+    // Up to its start; what each has borne is told in the end.
+    const auto count = [](const std::string& text) {
+        const auto start = std::min(text.find("simulate"), text.size());
+        return std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(start), '\n');
+    };
+    const std::string check = lines(4, "check"), run = lines(4, "run");
+    INFO(check << run);
+    CHECK(check.find("all 4 bodies, each: ") != std::string::npos);
+    CHECK(check.find("(all 4 bodies)") != std::string::npos);  // cells too large for glass
+    CHECK(run.find("molded all 4 bodies, each: ") != std::string::npos);
+    CHECK(run.find("open.obj: no material file defines the material 'none': left grey (all 4 "
+                   "bodies)") != std::string::npos);
+    CHECK(count(lines(9, "check")) <= count(check));
+    CHECK(count(lines(9, "run")) <= count(run));
+    const Json record = Json::parse(bytes_of(scratch.path() / "many" / "run.json"));
+    CHECK(record.at("warnings").size() < 9);
+    const Json told = Json::parse(run_swage({"check", "many.toml", "--json"}, scratch.path()).out);
+    CHECK(told.at("meshes").size() == 9);
+    CHECK(told.at("cost").at("bodies").size() == 9);
 }

@@ -53,3 +53,21 @@ TEST_CASE("where no mold is fine enough for a break only more toughness is told 
     CHECK(told.find("no cell size is fine enough; at this one it takes a toughness of ") !=
           std::string::npos);
 }
+
+TEST_CASE("cells that a mold may not have are not told to be enough") {
+    Material glass;
+    glass.name = "glass";
+    glass.young_modulus = 70e9, glass.strength = 45e6, glass.toughness = 8;
+    const int enough = resolved_strength(glass, 2e-3, 10).cells_for_whole;
+    const auto told = [&](double most) {
+        return strength_warning(glass, 2e-3, 10, "[mold]", most);
+    };
+    const std::string advice = fmt::format("[mold] across = {} would suffice", enough);
+    CHECK(told(enough).find(advice) != std::string::npos);
+    CHECK(told(enough - 1).find("would suffice") == std::string::npos);
+    CHECK(told(enough - 1)
+              .find(fmt::format("no lattice within its cell_limit is fine enough ([mold] "
+                                "across = {} would be); at this one it takes a "
+                                "toughness of ",
+                                enough)) != std::string::npos);
+}

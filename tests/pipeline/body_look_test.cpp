@@ -67,7 +67,7 @@ TEST_CASE("that a look which the scene gives is hidden by the mesh's own is told
         return read_input_meshes(scene).at(0).finding;
     };
     REQUIRE(told(true, false).size() == 1);
-    CHECK(told(true, false)[0].find("bar: the mesh file says how it looks, so the look of the "
+    CHECK(told(true, false)[0].find("the mesh file says how it looks, so the look of the "
                                     "material is not seen: look = \"material\"") == 0);
     CHECK(told(false, false).empty());
     CHECK(told(true, true).empty());

@@ -306,7 +306,9 @@ TEST_CASE("a body that makes all steps far shorter than others need is told, wit
     scene.body[0].name = "foam", scene.body[1].name = "ball", scene.body[2].name = "gear";
     const auto note_of = [&](double stiffer, Solver solver) {
         scene.stage[0].sim.solver = solver;
-        std::vector<Aggregate> matter;
+        CountedMatter counted;
+        counted.coarser.assign(3, 1.0);
+        std::vector<Aggregate>& matter = counted.matter;
         MoldSettings settings;
         settings.across = 3;
         for (std::size_t b = 0; b < 3; ++b) {
@@ -314,7 +316,7 @@ TEST_CASE("a body that makes all steps far shorter than others need is told, wit
             const Material material{.young_modulus = modulus[b], .density = 1000};
             matter.push_back(mold(make_shape("bar", {}).mesh, material, settings));
         }
-        return step_note(scene, matter);
+        return step_note(scene, counted);
     };
     const std::string note = note_of(900, Solver::explicit_steps);
     CHECK(note.find("all steps are as short as ball needs, others would allow longer ones: foam 30 "

@@ -49,7 +49,7 @@ std::string told_of_stage(const test::SceneFolder& scratch, const std::string& s
     const StageSpec& spec = reading.scene->stage[0];
     const Aggregate body = test::make_block(16, 4, 4, 0.1, reading.scene->work_piece().material);
     try {
-        stage_legs(spec, stage_machine(spec, body, {}, Box{}), 4, body);
+        stage_legs(spec, stage_machine(spec, body, {}, Box{}), 4, body.lattice.spacing);
     } catch (const SceneError& error) {
         CHECK(error.code() == ExitCode::scene);
         return test::told({error.mistakes()[0]}, scratch.path());

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/memory_cost.h"
+
+#include <algorithm>
+
+namespace swage {
+
+namespace {
+
+constexpr double kProgram = 26e6;  // a bar of 2 x 2 x 20 cells
+constexpr double kKept = 4e6;      // buffers of what is written as it goes
+// Of a mesh while it is read and checked, each triangle: balls of 461,000 and 2.5 million.
+constexpr double kReadTriangle = 450;
+// A vertex of a skin: its mesh, mount and places, and what is written of it (a ball of 230,498
+// that falls); more where blades cut it (the same in three slices); of a boundary, which has no
+// mount (animals of 24 to 56 cells across).
+constexpr double kMountedVertex = 1080, kCutVertex = 600, kBoundaryVertex = 600;
+// A particle, beside its matter: forces, moves and what is found of it at the end of a stage
+// (explicit steps of an animal of 17,386, 69,742 and 179,045); coarser lattices, their matrices and
+// where it was before (a bar of 20,449 and 116,909 twisted).
+constexpr double kMoved = 840, kRested = 1270;
+constexpr double kFlowed = 100, kFlowedSpring = 250;  // of copper that strikes, 90,751
+// A cell that may break, with springs, pieces and surfaces: of glass 4,400 to 28,000, by how much
+// of it is shattered (animals of 8,645 to 107,000 cells that strike at 8 m/s).
+constexpr double kBroken = 6000;
+// A cell's face at the surface: its points; what these have near, where there are tools or bodies
+// (the animals and the bars).
+constexpr double kFace = 2700, kTouchingFace = 2500;
+// Libraries that draw, and of each pixel their buffers (that bar drawn, 1280 x 720).
+constexpr double kDrawing = 117e6, kPixel = 60;
+constexpr double kDrawnVertex = 500;
+
+}  // namespace
+
+double memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                    const MemoryShare& of, bool draws) {
+    double held = kProgram, read = 0;
+    for (const InputMesh& one : input) {
+        const double triangles =
+            static_cast<double>(one.mesh.triangle.size() + one.solid.triangle.size());
+        read = std::max(read, kReadTriangle * triangles);
+    }
+    const auto cuts = [](const StageSpec& stage) { return !stage.machine.blade.empty(); };
+    const auto rests = [](const StageSpec& stage) { return !in_motion(stage.sim.solver); };
+    const auto touches = [&](const StageSpec& stage) {
+        return !stage.machine.tool.empty() || stage.sim.self_contact;
+    };
+    const bool springs = scene.any_material(
+        [](const Material& m) { return m.yields() && m.mechanics == Mechanics::springs; });
+    const double flowed = springs ? kFlowedSpring : scene.yields() ? kFlowed : 0;
+    const double particle = (scene.any_stage(rests) ? kRested : kMoved) + flowed;
+    const double face =
+        kFace + (scene.any_stage(touches) || scene.body.size() > 1 ? kTouchingFace : 0);
+    const double vertex = scene.skin.kind == SkinKind::boundary
+                              ? kBoundaryVertex
+                              : kMountedVertex + (scene.any_stage(cuts) ? kCutVertex : 0);
+    const double simulated = of.matter + of.particles * particle +
+                             (scene.breaks() ? of.cells * kBroken : 0) + of.faces * face +
+                             of.vertices * vertex + of.way + kKept;
+    const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
+    const double drawn = draws ? kDrawing + kPixel * pixels + of.vertices * kDrawnVertex : 0;
+    return held + std::max({read, simulated, drawn});
+}
+
+}  // namespace swage

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run takes of memory at its peak, by its parts. Measured as the most that a process of
+// `swage run` had resident; tests/verify/LIMITS.md has a table of what was told and what came.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/work_piece.h"
+#include "scene/spec.h"
+
+namespace swage {
+
+// Of all bodies together.
+struct MemoryShare {
+    double matter = 0;  // [byte]
+    double particles = 0, cells = 0;
+    double faces = 0;     // of cells, that its surface is as large as
+    double vertices = 0;  // of skins
+    double way = 0;       // [byte], of machines
+};
+
+// [byte]. `draws`: stills too, once it is simulated.
+double memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                    const MemoryShare& of, bool draws);
+
+}  // namespace swage

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run is told to cost where its matter is too large to be molded for that: larger cells are
+// counted in its stead.
+#include <algorithm>
+
+#include "base/error.h"
+#include "geometry/box_mesh.h"
+#include "geometry/make_shape.h"
+#include "pipeline/cost.h"
+#include "scene/read_scene.h"
+#include "tests/catch.h"
+#include "tests/scene/scratch.h"
+
+using namespace swage;
+
+namespace {
+
+struct CountedScene {
+    SceneSpec scene;
+    std::vector<InputMesh> input;
+
+    CountedScene(const std::string& shape, const std::string& material, const std::string& stage) {
+        const test::Scratch scratch;
+        scratch.write("shape.obj", "");
+        const SceneReading reading = read_scene(
+            scratch.write("s.toml", "[mesh]\nfile = \"shape.obj\"\n[material]\nname = \"" +
+                                        material + "\"\n[mold]\nacross = 4\n[[stage]]\n" +
+                                        "frames = 3\nmachine = " + stage),
+            {}, test::shipped());
+        for (const Mistake& mistake : reading.mistakes) UNSCOPED_INFO(mistake_text(mistake));
+        REQUIRE(reading.scene);
+        scene = *reading.scene;
+        input.resize(1);
+        input[0].mesh = make_shape(shape, {}).mesh;
+    }
+    RunCost cost(int across, double most) {
+        scene.body[0].mold.across = across;
+        RunOptions options;
+        options.draw = false;
+        return count_cost(scene, input, options, most);
+    }
+};
+
+constexpr double kAll = 1e9, kFew = 3000;
+
+const char* const kBend = "\"bend\"\nangle = \"90 deg\"\n";
+const char* const kFloor =
+    "\"floor\"\ndrop = \"1 mm\"\ngravity = \"9.81 m/s2\"\nduration = \"1 ms\"\n";
+const char* const kPress = "\"press\"\ndepth = 0.3\n";
+
+void check_near(const char* what, double told, double wanted, double factor) {
+    INFO(what << " " << told << " of " << wanted);
+    CHECK(told < factor * wanted);
+    CHECK(told > wanted / factor);
+}
+
+}  // namespace
+
+TEST_CASE("what larger cells tell of a run is what its own would, and all that is told of these") {
+    for (const auto& [shape, material, stage] :
+         {std::tuple("wrench", "steel_4340", kBend), std::tuple("calf", "rubber", kFloor),
+          std::tuple("calf", "copper", kFloor), std::tuple("sphere", "clay", kPress)}) {
+        CountedScene run(shape, material, stage);
+        const RunCost whole = run.cost(24, kAll), told = run.cost(24, kFew);
+        INFO(shape << " " << material << " " << whole.mold.active_cells);
+        REQUIRE(whole.mold.active_cells > 2 * kFew);
+        CHECK(whole.counted);
+        CHECK_FALSE(told.counted);
+        check_near("cells", told.mold.active_cells, whole.mold.active_cells, 1.1);
+        check_near("particles", told.mold.particles, whole.mold.particles, 1.1);
+        check_near("connections", told.mold.connections, whole.mold.connections, 1.1);
+        check_near("matter", told.mold.bytes, whole.mold.bytes, 1.15);
+        check_near("least steps", told.steps.least, whole.steps.least, 1.3);
+        check_near("most steps", told.steps.most, whole.steps.most, 1.3);
+        check_near("least time", told.seconds.least, whole.seconds.least, 1.3);
+        check_near("most time", told.seconds.most, whole.seconds.most, 1.3);
+        check_near("memory", told.memory_bytes, whole.memory_bytes, 1.1);
+        check_near("disk", told.disk_bytes, whole.disk_bytes, 1.1);
+        check_near("give", told.tool_give, whole.tool_give, 1.3);
+        CHECK(told.place.size() == 1);
+        CHECK(told.place.at(0).axes == whole.place.at(0).axes);
+        CHECK(told.place.at(0).tools == whole.place.at(0).tools);
+        CHECK(told.note == whole.note);
+        CHECK(told.body[0].spacing == whole.body[0].spacing);
+    }
+}
+
+TEST_CASE("nothing that is told of a run drops, or leaps, where its cells get too many to count") {
+    for (const auto& [material, stage] :
+         {std::pair("steel_4340", kBend), std::pair("rubber", kFloor)}) {
+        CountedScene run("wrench", material, stage);
+        const double few = run.cost(6, kAll).mold.active_cells;
+        RunCost last = run.cost(3, few);
+        bool was_counted = last.counted;
+        CHECK(was_counted);
+        for (int across = 4; across <= 12; ++across) {
+            const RunCost now = run.cost(across, few);
+            const double finer = double(across) / (across - 1);
+            INFO(material << " " << across << " " << now.mold.active_cells);
+            CHECK((was_counted || !now.counted));
+            was_counted = now.counted;
+            for (const auto& [before, after, most] :
+                 {std::tuple(last.mold.active_cells, now.mold.active_cells, 3),
+                  std::tuple(last.mold.bytes, now.mold.bytes, 3),
+                  std::tuple(last.steps.least, now.steps.least, 1),
+                  std::tuple(last.steps.most, now.steps.most, 1),
+                  std::tuple(last.seconds.least, now.seconds.least, 4),
+                  std::tuple(last.seconds.most, now.seconds.most, 4),
+                  std::tuple(last.memory_bytes, now.memory_bytes, 3),
+                  std::tuple(last.disk_bytes, now.disk_bytes, 3)}) {
+                CHECK(after > 0.95 * before);
+                CHECK(after < 1.3 * std::pow(finer, most) * before);
+            }
+            last = now;
+        }
+        CHECK_FALSE(last.counted);
+    }
+}
+
+TEST_CASE("a body is counted in whole layers where it has them, and never in less than one") {
+    const auto mold = [](double cells) {
+        MoldEstimate one{};
+        one.active_cells = cells;
+        return one;
+    };
+    CHECK(coarser_by({mold(900)}, {6}, 1000) == std::vector<double>{1});
+    CHECK(coarser_by({mold(8000)}, {6}, 1000)[0] == Approx(2));
+    CHECK(coarser_by({mold(8000)}, {7}, 1000)[0] == Approx(7. / 3));
+    CHECK(coarser_by({mold(8000)}, {7.5}, 1000)[0] == Approx(2));
+    CHECK(coarser_by({mold(8e6)}, {3}, 1000)[0] == Approx(3));
+    CHECK(coarser_by({mold(8e6)}, {1}, 1000)[0] == 1);
+    // Of several those that have more than their share.
+    const std::vector<double> coarser =
+        coarser_by({mold(100), mold(7200), mold(100)}, {2, 8, 2}, 1100);
+    CHECK(coarser[0] == 1);
+    CHECK(coarser[1] == Approx(2));
+    CHECK(coarser[2] == 1);
+}
+
+TEST_CASE("what larger cells have no room for is counted all the same") {
+    // A sheet of a layer; and what a box is too small for.
+    CountedScene run("sheet", "rubber", kFloor);
+    run.input[0].mesh = box_mesh({0, 0, 0}, {0.4, 0.002, 0.4});
+    const RunCost told = run.cost(1, kFew);
+    CHECK(told.mold.active_cells == Approx(40000).epsilon(0.02));
+    CHECK(told.counted);
+    CHECK(told.place.size() == 1);
+}
+
+TEST_CASE("steps are told about as many without a mold as with one") {
+    for (const char* material : {"rubber", "steel_4340", "aluminium", "glass"}) {
+        CountedScene run("bar", material, kFloor);
+        const RunCost counted = run.cost(6, kAll);
+        RunOptions options;
+        options.draw = false;
+        const RunCost told = estimate_cost(run.scene, run.input, options);
+        INFO(material);
+        check_near("steps", told.steps.least, counted.steps.least, 1.4);
+    }
+}
+
+TEST_CASE("more cells than may be molded are refused before anything is counted") {
+    CountedScene run("bar", "rubber", kFloor);
+    RunOptions options;
+    run.scene.body[0].mold.across = 300;
+    for (const auto tell : {+[](const CountedScene&of, const RunOptions&with) {
+                                count_cost(of.scene, of.input, with);
+                            },
+                            +[](const CountedScene&of, const RunOptions&with) {
+                                estimate_cost(of.scene, of.input, with);
+                            }}) {
+        std::string sentence;
+        ExitCode code = ExitCode::done;
+        try {
+            tell(run, options);
+        } catch (const Error& error) {
+            code = error.code(), sentence = error.what();
+        }
+        INFO(sentence);
+        CHECK(code == ExitCode::resources);
+        CHECK(sentence.find("are more than [mold] cell_limit = 50,000,000: use a larger spacing") !=
+              std::string::npos);
+        CHECK(sentence.find("e+") == std::string::npos);
+    }
+}
+
+TEST_CASE("a run is refused for what it has to write, not for what it keeps to go on from") {
+    RunOptions options;
+    options.out = ".";
+    options.draw = false;
+    RunCost cost;
+    cost.disk_bytes = 1e30;
+    CHECK_NOTHROW(refuse_excess(cost, options));
+    cost.least_disk_bytes = 1e30;
+    CHECK_THROWS_AS(refuse_excess(cost, options), Error);
+    CountedScene run("bar", "rubber", kBend);
+    const RunCost told = run.cost(12, kAll);
+    CHECK(told.least_disk_bytes < 0.5 * told.disk_bytes);
+    CHECK(told.least_disk_bytes > 0);
+}
