@@ -27,9 +27,9 @@ constexpr double kDrag = 25e-9, kTools = 12e-9, kMeets = 60e-9;
 constexpr CostRange kBreaking = {0.1e-6, 0.8e-6};
 constexpr double kBreakingByMachines = 15e-6, kMostBreaking = 30e-6;
 constexpr double kTakenBack = 1.1;  // steps, and those that are taken again
-// Flow strikes cells flat, whose swings are faster: steps for one of the elastic body, beside it (a
-// rod of copper 17 at 0.6, lumps of clay 4).
-constexpr CostRange kFlattened = {3, 35};
+// Flow strikes cells flat, whose swings are faster: steps for one of the elastic body, beside it,
+// at the most (a rod of copper 17 at 0.6, lumps of clay 4; what is never struck flat needs none).
+constexpr double kFlattened = 35;
 constexpr double kFlattenedByMachines = 10, kFlattest = 50;
 
 constexpr CostRange kEnergySteps = {10, 200};        // for each explicit one, while a body swings
@@ -61,12 +61,19 @@ bool yields_as_springs(const SceneSpec& scene) {
         [](const Material& m) { return m.yields() && m.mechanics == Mechanics::springs; });
 }
 
-double least_damping(const SceneSpec& scene) {
-    double least = 1;
+// Explicit steps for one of Euler's (sim/block_steps.cpp): dashpots damp the fastest swings of
+// cells less the less their matter can be compressed, and shorten explicit steps only.
+double euler_steps(const SceneSpec& scene) {
+    double least = 1, largest = 0;
     for (const BodySpec& body : scene.body) {
-        for (const Material* m : body.materials()) least = std::min(least, m->damping_ratio);
+        const bool has_cells = body.material.mechanics == Mechanics::cells;
+        for (const Material* m : body.materials()) {
+            const double damped = has_cells ? std::min(1.0, 2 * (1 - 2 * m->poisson_ratio)) : 1;
+            least = std::min(least, m->damping_ratio * damped);
+            largest = std::max(largest, m->damping_ratio);
+        }
     }
-    return least;
+    return (std::sqrt(1 + largest * largest) - largest) / std::max(least, 1e-6);
 }
 
 // The energy of motion with which a body strikes, in shares of what each cubic metre holds.
@@ -77,30 +84,50 @@ double held_until_breaking(const Material& m) {
     return 0.5 * m.strength * m.strength / m.young_modulus;
 }
 
-// Of the materials that break or flow, at the least by the speeds that bodies start with, at the
-// most by those that gravity may give them too.
+// How fast a body that starts slower may become [m/s].
+double fastest(const SceneSpec& scene, const StageSpec& stage, double first) {
+    const double gravity = stage.sim.gravity.norm();
+    const double fall = gravity * stage.duration;
+    const auto drop = stage.parameter.find("drop");
+    const MachineSpec& machine = stage.machine;
+    const bool only_falls = scene.body.size() == 1 && machine.upright && machine.stands() &&
+                            machine.load.empty() && !stage.parameter.contains("slope");
+    if (drop == stage.parameter.end() || !only_falls) return first + fall;
+    return std::min(first + fall, std::sqrt(first * first + 2 * gravity * drop->second));
+}
+
+// How fast it surely comes to a tool below it [m/s].
+double sure_speed(const SceneSpec& scene, const StageSpec& stage, const BodySpec& body) {
+    if (stage.machine.tool.empty() || &stage != &scene.stage.front()) return 0;
+    const Vec3 up = direction_of(stage.up == WorldAxis::automatic ? WorldAxis::y : stage.up);
+    const double down = -body.start.velocity.dot(up);
+    const auto drop = stage.parameter.find("drop");
+    const bool arrives =
+        drop == stage.parameter.end() || down * stage.duration > drop->second;
+    return arrives ? std::max(0.0, down) : 0;
+}
+
+// Of the materials that break or flow. What flow makes of cells is never sure.
 struct Strikes {
-    CostRange breaking, flowing;
+    CostRange breaking;
+    double flowing = 0;  // at the most
 };
 Strikes strikes(const SceneSpec& scene, const StageSpec& stage) {
     Strikes found;
     const bool can_strike = !stage.machine.tool.empty() || scene.body.size() > 1;
     if (!can_strike) return found;
-    const double fall = stage.sim.gravity.norm() * stage.duration;
-    const auto grow = [](CostRange& range, double least, double most) {
-        range = {std::max(range.least, least), std::max(range.most, most)};
-    };
     for (const BodySpec& body : scene.body) {
-        const double first = body.start.velocity.norm(), last = first + fall;
+        const double least = sure_speed(scene, stage, body);
+        const double most = fastest(scene, stage, body.start.velocity.norm());
         for (const Material* m : body.materials()) {
             if (m->breaks()) {
-                const double holds = held_until_breaking(*m);
-                const double least = struck(*m, first, holds);
-                grow(found.breaking, least > 1 ? least : 0, struck(*m, last, holds));
+                const double holds = held_until_breaking(*m), sure = struck(*m, least, holds);
+                CostRange& breaking = found.breaking;
+                breaking.least = std::max(breaking.least, sure > 1 ? sure : 0);
+                breaking.most = std::max(breaking.most, struck(*m, most, holds));
             }
             if (m->yields()) {
-                grow(found.flowing, struck(*m, first, m->yield_stress),
-                     struck(*m, last, m->yield_stress));
+                found.flowing = std::max(found.flowing, struck(*m, most, m->yield_stress));
             }
         }
     }
@@ -138,8 +165,7 @@ StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& 
     CostRange steps = {elastic, elastic};
     if (scene.yields()) {
         const double driven = is_driven ? kFlattenedByMachines : 1;
-        steps.least *= std::min(kFlattest, 1 + kFlattened.least * by.flowing.least);
-        steps.most *= std::min(kFlattest, std::max(driven, 1 + kFlattened.most * by.flowing.most));
+        steps.most *= std::min(kFlattest, std::max(driven, 1 + kFlattened * by.flowing));
     }
     if (stage.sim.solver == Solver::energy_stepped) {
         steps = {steps.least * kEnergySteps.least, steps.most * kEnergySteps.most};
@@ -173,7 +199,7 @@ double CostRange::middle() const { return std::sqrt(least * most); }
 
 double more_steps(const SceneSpec& scene, Solver solver) {
     if (solver == Solver::energy_stepped) return kEnergySteps.middle();
-    return solver == Solver::euler ? 1 / std::max(least_damping(scene), 1e-3) : 1;
+    return solver == Solver::euler ? euler_steps(scene) : 1;
 }
 
 StageTime stage_time(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load,

@@ -75,6 +75,12 @@ TEST_CASE("the steps that a run takes lie in the range that check tells") {
     holds(floor, rubber);
     holds(floor, clay);
     holds("twist\"\nsolver = \"explicit\"\nduration = \"4 ms\"\n", copper);
+    const std::string by_euler =
+        "floor\"\nsolver = \"euler\"\ngravity = 9.81\nduration = \"1 ms\"\n";
+    for (const char* ratio : {"0.2", "0.4", "0.49"}) {
+        holds(by_euler, rubber + "poisson_ratio = " + ratio + "\n");
+    }
+    holds(by_euler, rubber + "damping_ratio = 0.25\n");
     holds("bend\"\nsolver = \"implicit\"\nangle = \"5 deg\"\nduration = \"20 ms\"\n", rubber);
 }
 

@@ -113,6 +113,35 @@ TEST_CASE("a time that nothing can change much is told as one, what may go to pi
     CHECK(struck.seconds().least > 2 * least);
 }
 
+TEST_CASE(
+    "the least that is told is what a body takes that strikes nothing, the most what it may") {
+    const auto bar = [](const Vec3& velocity, double yield_stress, double strength) {
+        Work work(Solver::explicit_steps, true);
+        work.scene.body[0].material.yield_stress = yield_stress;
+        work.scene.body[0].material.strength = strength;
+        work.scene.body[0].start.velocity = velocity;
+        return work.seconds();
+    };
+    const double never = std::numeric_limits<double>::infinity();
+    for (const Vec3& away : {Vec3(0, 1000, 0), Vec3(1000, 0, 0)}) {
+        CHECK(bar(away, 1e6, never).least == Approx(bar(Vec3::Zero(), 1e6, never).least));
+        CHECK(bar(away, never, 1e6).least == Approx(bar(Vec3::Zero(), never, 1e6).least));
+    }
+    // How flat flow strikes cells is not known either.
+    const Vec3 down(0, -1000, 0);
+    CHECK(bar(down, 1e6, never).least == Approx(bar(Vec3::Zero(), 1e6, never).least));
+    CHECK(bar(down, 1e6, never).most > 10 * bar(Vec3::Zero(), 1e6, never).least);
+    // Who falls no farther than a drop is no faster.
+    Work falls(Solver::explicit_steps, true);
+    falls.scene.stage[0].duration = 100;
+    falls.scene.stage[0].machine.upright = true;
+    falls.scene.stage[0].sim.gravity = {0, -9.81, 0};
+    falls.scene.body[0].material.yield_stress = 1e6;
+    const double any = falls.seconds().most;
+    falls.scene.stage[0].parameter["drop"] = 0.01;
+    CHECK(falls.seconds().most < 0.5 * any);
+}
+
 TEST_CASE("the same scene is told the same, and never longer with another thread") {
     const int before = thread_count();
     for (const Solver solver : kSolvers) {
