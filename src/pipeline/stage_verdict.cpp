@@ -7,9 +7,12 @@
 #include <utility>
 
 #include "base/text.h"
+#include "geometry/triangle_tree.h"
+#include "matter/cell_middle.h"
 #include "sim/gripped_pieces.h"
 #include "sim/motion_guard.h"
 #include "sim/own_overlap.h"
+#include "sim/sever.h"
 #include "sim/static_forces.h"
 #include "sim/surface_modulus.h"
 
@@ -205,6 +208,46 @@ std::string how_to_close(Solver solver, const Books& last) {
            "contact_stiffness";
 }
 
+// All that the blades sweep, however few frames show of it.
+TriMesh swept_by_blades(const StageEnd& end) {
+    constexpr int kLooks = 256;
+    std::vector<Drive> way;
+    for (int n = 0; n <= kLooks; ++n) {
+        way.push_back(drive_at(end.machine, static_cast<double>(n) / kLooks, end.duration));
+    }
+    TriMesh swept;
+    for (const std::array<Vec3, 3>& corner : swept_triangles(end.machine.apparatus, way)) {
+        if ((corner[1] - corner[0]).cross(corner[2] - corner[0]).isZero(0)) continue;
+        const int first = static_cast<int>(swept.position.size());
+        swept.position.insert(swept.position.end(), corner.begin(), corner.end());
+        swept.triangle.push_back({first, first + 1, first + 2});
+    }
+    return swept;
+}
+
+// Why no blade has severed anything: what goes through a cell may pass between its particles.
+std::string why_nothing_is_cut(const StageEnd& end) {
+    constexpr float kWhole = 0.99f;  // of a cell
+    const TriMesh swept = swept_by_blades(end);
+    if (!swept.triangle.empty()) {
+        const TriangleTree tree(swept);
+        for (const WorkPiece& body : end.bodies) {
+            const Aggregate& matter = body.matter;
+            const double a = matter.lattice.spacing;
+            for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+                if (matter.cell_fill[c] < kWhole) continue;
+                if (tree.distance(cell_middle(matter, static_cast<CellId>(c))) > 0.5 * a) continue;
+                return fmt::format(
+                    "the blade went into matter but severed nothing: what is narrower than a cell, "
+                    "{}, or goes in by less than one, passes between particles; smaller cells or a "
+                    "wider blade avoid that",
+                    length_text(a));
+            }
+        }
+    }
+    return "the blade met no matter: it passed beside the work-piece or through a gap in it";
+}
+
 // "a", "a and b", "a, b and c"; of more, the first.
 std::string names_text(std::vector<std::string> names) {
     constexpr std::size_t kTold = 3;
@@ -221,7 +264,8 @@ std::vector<std::string> idle_parts(const StageEnd& end) {
     const Apparatus& apparatus = end.machine.apparatus;
     std::vector<std::string> told, blunt, empty;
     const std::size_t first = apparatus.tool.size() + apparatus.grip.size();
-    for (std::size_t n = 0; n < apparatus.blade.size() && end.totals.severed > 0; ++n) {
+    const std::size_t told_of = std::min(end.last.load.size(), first + apparatus.blade.size());
+    for (std::size_t n = 0; first + n < told_of && end.totals.severed > 0; ++n) {
         if (end.last.load[first + n].severed == 0) blunt.push_back(apparatus.blade[n].name);
     }
     if (!blunt.empty()) {
@@ -273,7 +317,7 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
                    "it");
     }
     if (whole && !end.machine.apparatus.blade.empty() && end.totals.severed == 0) {
-        warn("the blade met no matter: it passed beside the work-piece or through a gap in it");
+        warn(why_nothing_is_cut(end));
     }
     if (whole && end.totals.severed > 0 && piece_count(end.bodies) == pieces_before) {
         warn(

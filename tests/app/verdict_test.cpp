@@ -44,6 +44,20 @@ TEST_CASE("a blade that meets nothing is told of, and one that cuts is not") {
     CHECK(!says(told_of(kBar, cut), "met no matter"));
 }
 
+TEST_CASE("a blade that passes between the particles of a cell is not said to have met no matter") {
+    const swage::TriMesh bar = box_mesh({-0.06, -0.01, -0.01}, {0.06, 0.01, 0.01});
+    const auto told = [&](const std::string& width) {
+        return told_of(bar, "[[stage]]\nmachine = \"cut\"\nframes = 2\n" + width, {}, "rubber", 3);
+    };
+    const std::string narrow = told("blade_width = \"4 mm\"\n");
+    INFO(narrow);
+    CHECK(says(narrow,
+               "the blade went into matter but severed nothing: what is narrower than a "
+               "cell, 6.667 mm, "));
+    CHECK(!says(narrow, "met no matter"));
+    CHECK(!says(told(""), "severed nothing"));
+}
+
 TEST_CASE("blades that cut nothing, grips that hold nothing and pieces in no grip are told of") {
     const auto sliced = [](const char* slices, int across) {
         return told_of(
