@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "base/units.h"
 #include "machines/tool_clash.h"
@@ -149,6 +150,20 @@ std::string depth_note(const Machine& machine, std::size_t n, const std::vector<
     return "";
 }
 
+// Of a load whose points are all clamped, so that its grips bear it and nothing else feels it.
+std::string clamped_note(const Load& load, const std::vector<Grip>& grips) {
+    std::set<int> clamped;
+    for (const Grip& grip : grips) {
+        if (grip.hold == Vec3::Ones() && grip.body == load.body) {
+            clamped.insert(grip.point.begin(), grip.point.end());
+        }
+    }
+    const bool is_free = std::any_of(load.point.begin(), load.point.end(),
+                                     [&](int point) { return !clamped.contains(point); });
+    if (is_free) return "";
+    return fmt::format("load {} does nothing: all that it acts on is clamped", load.name);
+}
+
 }  // namespace
 
 std::vector<std::string> start_notes(const Machine& machine, const Aggregate& matter,
@@ -184,6 +199,7 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
     for (std::size_t n = 0; only_blades_move(machine.spec) && n < apparatus.blade.size(); ++n) {
         note(miss_note(machine, n, way_of(machine.blade_motion[n]), matter.lattice.spacing));
     }
+    for (const Load& load : apparatus.load) note(clamped_note(load, apparatus.grip));
     of_jumps("tool ", apparatus.tool, machine.tool_motion, machine.work_from_tool);
     of_jumps("grip ", apparatus.grip, machine.grip_motion, machine.work_from_grip);
     of_jumps("blade ", apparatus.blade, machine.blade_motion, machine.work_from_blade);

@@ -8,6 +8,7 @@
 
 #include "base/expression.h"
 #include "base/text_error.h"
+#include "scene/way_text.h"
 
 namespace swage {
 
@@ -24,7 +25,31 @@ bool is_zero(const Expression& one) {
     }
 }
 
-void judge_loads(const Node& node, const StageSpec& stage, MistakeList& mistakes) {
+// What follows the stage's time alone, and is 0 whenever it is looked at.
+bool is_zero_throughout(const Expression& one, double duration) {
+    constexpr int kLooks = 4096;
+    if (one.empty()) return false;
+    try {
+        const Formula formula(one.text, {"t", "duration"});
+        for (int n = 0; n <= kLooks; ++n) {
+            const double values[] = {double(n) / kLooks, duration};
+            if (formula.evaluate(values) != 0) return false;
+        }
+        return true;
+    } catch (const TextError&) {
+        return false;
+    }
+}
+
+void judge_gravity(const Node& node, const StageSpec& stage, double duration,
+                   MistakeList& mistakes) {
+    const Entry* given = node.find("gravity_strength");
+    if (given == nullptr || stage.sim.gravity == Vec3::Zero()) return;
+    if (!is_zero_throughout(stage.machine.gravity_strength, duration)) return;
+    mistakes.warn(given->value.place, "gravity does nothing: its strength is 0 throughout");
+}
+
+void judge_loads(const Node& node, const StageSpec& stage, double duration, MistakeList& mistakes) {
     const Entry* given = node.find("load");
     const std::size_t loads = given != nullptr ? given->value.item.size() : 0;
     if (loads > stage.machine.load.size()) return;
@@ -34,12 +59,13 @@ void judge_loads(const Node& node, const StageSpec& stage, MistakeList& mistakes
         const bool is_none = load.force
                                  ? std::all_of(load.force->begin(), load.force->end(), is_zero)
                                  : is_zero(load.pressure);
-        if (!is_none && !is_zero(load.strength)) continue;
+        if (!is_none && !is_zero_throughout(load.strength, duration)) continue;
         mistakes.warn(given->value.item[n].place,
-                      fmt::format("load {} does nothing: its {} is 0", load.name,
+                      fmt::format("load {} does nothing: its {} is 0{}", load.name,
                                   !is_none     ? "strength"
                                   : load.force ? "force"
-                                               : "pressure"));
+                                               : "pressure",
+                                  is_none || is_zero(load.strength) ? "" : " throughout"));
     }
 }
 
@@ -49,14 +75,6 @@ std::optional<Vec3> down_of(const StageSpec& stage) {
     if (!stage.machine.upright) return std::nullopt;
     return -direction_of(stage.up == WorldAxis::automatic ? WorldAxis::y : stage.up);
 }
-std::string way_text(const Vec3& way) {
-    for (int n = 1; n <= 6; ++n) {
-        const auto axis = static_cast<WorldAxis>(n);
-        if (direction_of(axis).dot(way) > 1 - 1e-6) return name_of(axis);
-    }
-    return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", way.x(), way.y(), way.z());
-}
-
 // Bodies do not turn between machines, so they would fall to another side.
 void judge_downs(const Node& root, const SceneSpec& scene, MistakeList& mistakes) {
     constexpr double kAlike = 0.7;  // cosine of just beyond 45 degrees: slopes are meant
@@ -91,7 +109,9 @@ void warn_of_doubtful_stages(const Node& root, const SceneSpec& scene, MistakeLi
     const Entry* stages = root.find("stage");
     for (std::size_t s = 0; s < scene.stage.size(); ++s) {
         if (stages == nullptr || s >= stages->value.item.size()) break;
-        judge_loads(stages->value.item[s], scene.stage[s], mistakes);
+        const StageSpec& stage = scene.stage[s];
+        judge_loads(stages->value.item[s], stage, scene.duration_of(stage), mistakes);
+        judge_gravity(stages->value.item[s], stage, scene.duration_of(stage), mistakes);
     }
     judge_downs(root, scene, mistakes);
 }

@@ -230,3 +230,22 @@ TEST_CASE("a punch that ends below the rim of a ring is noted, one that goes dow
         if (is_caught) CHECK(tells(notes, "tools ring and punch overlap by 1.2 cm at t ="));
     }
 }
+
+TEST_CASE("a load on nothing but what grips clamp is noted, and one on more is not") {
+    const auto notes = [](Side on, std::array<bool, 3> along = {true, true, true}) {
+        MachineSpec spec;
+        spec.name = "vice";
+        spec.grip = {vice_grips()[0]};
+        spec.grip[0].along = along;
+        LoadSpec load;
+        load.name = "wind";
+        load.on = on;
+        load.force = Expression3{"0", "-1 N", "0"};
+        spec.load = {load};
+        return notes_of(spec);
+    };
+    CHECK(tells(notes(Side::left), "load wind does nothing: all that it acts on is clamped"));
+    CHECK(notes(Side::right).empty());
+    CHECK(notes(Side::top).empty());
+    CHECK(notes(Side::left, {true, false, true}).empty());
+}

@@ -211,6 +211,16 @@ TEST_CASE("what a stage says in vain is told") {
         {"no strength",
          of("hold\"\n[[stage.load]]\nforce = [0, \"9 N\", 0]\nstrength = 0"),
          {"9:1: warning: load load_1 does nothing: its strength is 0"}},
+        {"no strength at any time",
+         of("hold\"\n[[stage.load]]\nforce = [0, \"9 N\", 0]\nstrength = \"max(0, t - 1)\""),
+         {"9:1: warning: load load_1 does nothing: its strength is 0 throughout"}},
+        {"no gravity at any time",
+         of("hold\"\ngravity = 9.81\ngravity_strength = \"0\""),
+         {"10:20: warning: gravity does nothing: its strength is 0 throughout"}},
+        {"none by the time that it takes",
+         of("hold\"\nduration = \"1 s\"\nsolver = \"explicit\"\ngravity = 9.81\n"
+            "gravity_strength = \"t*duration > 2\""),
+         {"12:20: warning: gravity does nothing: its strength is 0 throughout"}},
     });
     for (const char* right : {
              "bend\"\n[[stage]]\nmachine = \"twist\"\nremold = true",
@@ -219,6 +229,8 @@ TEST_CASE("what a stage says in vain is told") {
              "hold\"\nduration = \"1 s\"\n[[stage.load]]\nforce = [0, \"9 N\", 0]\n"
              "strength = \"sin(2*pi*t*duration)\"",
              "twist\"\nangle = 0\nstretch = 0.1",
+             "hold\"\ngravity = 9.81\ngravity_strength = \"t > 0.5 && t < 0.501\"",
+             "press\"\ngravity = 9.81\ngravity_strength = \"depth*t\"",
              "cut\"\ntilt = 0\nrising = 0",
              "hold\"\n[[stage.load]]\nforce = [0, \"0 N\", \"1 N\"]",
          }) {
