@@ -12,8 +12,10 @@ namespace swage {
 
 namespace {
 
-constexpr double kPure = 1e-3;     // share of a cell's matter that is taken for nothing
-constexpr double kOutside = 1e-3;  // share of an inset that may lie outside unmentioned
+constexpr double kPure = 1e-3;  // share of a cell's matter that is taken for nothing
+// Shares of an inset that may go unmentioned: outside, as a box does at rounded edges, and too
+// thin.
+constexpr double kOutside = 0.03, kSlight = 1e-3;
 
 // What one material has of a cell; fill times centroid; area times the outward normal of the
 // insets' surface in the cell.
@@ -61,17 +63,17 @@ class InsetParts {
                const Aggregate& matter)
         : frame_(frame), matter_(matter), surface_(surface_cells(layers, matter.lattice)) {}
 
-    // In cells: what of it lies in the body, and all of it.
+    // In cells: what of it is in the body, what would be were it more of its cells, and all of it.
     struct Volume {
-        double inside, all;
+        double inside, slight, all;
     };
     Volume add(const Inset& inset, int material) {
-        Volume volume{0, signed_volume(inset.solid) / frame_.cell_volume()};
+        Volume volume{0, 0, signed_volume(inset.solid) / frame_.cell_volume()};
         const std::vector<CellLayer> layers = share_cells(inset.solid, frame_);
         for (int k = 0; k < static_cast<int>(layers.size()); ++k) {
             const CellLayer& layer = layers[static_cast<std::size_t>(k)];
             volume.all += layer.deficit - layer.surplus;
-            for (const CellFill& share : layer.share) volume.inside += add(share, k, material);
+            for (const CellFill& share : layer.share) add(share, k, material, volume);
             for (const SurfacePatch& patch : layer.patch) add(patch, k, material);
         }
         return volume;
@@ -79,17 +81,20 @@ class InsetParts {
     std::map<CellId, CellParts>& all() { return parts_; }
 
   private:
-    double add(const CellFill& share, int k, int material) {
+    void add(const CellFill& share, int k, int material, Volume& volume) {
         const CellId cell = matter_.lattice.cell_at(share.i, share.j, k);
-        if (cell < 0) return 0;
+        if (cell < 0) return;
         const double whole = matter_.cell_fill[cell];
         const double fill = std::clamp(share.fill, 0.0, whole);
-        if (fill < kPure * whole) return 0;
+        if (fill < kPure * whole) {
+            volume.slight += fill;
+            return;
+        }
+        volume.inside += fill;
         const Vec3 centroid = whole - fill < kPure * whole
                                   ? Vec3(matter_.cell_centroid[cell].cast<double>())
                                   : Vec3(share.moment / share.fill);
         add_part(material, fill, centroid, whole, parts_[cell]);
-        return fill;
     }
     // Where the body has its own surface, an inset's may be the same and tell nothing.
     void add(const SurfacePatch& patch, int k, int material) {
@@ -158,16 +163,21 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
     for (std::size_t n = 0; n < insets.size(); ++n) {
         refuse_unfit(insets[n], n);
         matter.inset.push_back(insets[n].material);
-        const auto [inside, all] = parts.add(insets[n], static_cast<int>(n) + 1);
+        const auto [inside, slight, all] = parts.add(insets[n], static_cast<int>(n) + 1);
         if (inside == 0) {
             throw InsetError(
-                n, fmt::format("cannot mold: inset {} lies outside the work-piece", n + 1));
+                n, fmt::format("cannot mold: inset {} {}", n + 1,
+                               slight > 0 ? "is less than a thousandth of each cell that it lies in"
+                                          : "lies outside the work-piece"));
         }
-        if (inside < (1 - kOutside) * all) {
+        const auto find = [&](double share, const char* why) {
             findings.push_back(
-                fmt::format("{:.3g} % of inset {} lies outside the work-piece and is left out",
-                            100 * (1 - inside / all), n + 1));
+                fmt::format("{:.3g} % of inset {} {} and is left out", 100 * share, n + 1, why));
+        };
+        if (inside + slight < (1 - kOutside) * all) {
+            find(1 - (inside + slight) / all, "lies outside the work-piece");
         }
+        if (slight > kSlight * all) find(slight / all, "is less than a thousandth of its cell");
     }
     matter.cell_material.assign(matter.cell_fill.size(), 0);
     for (auto& [cell, of] : parts.all()) {

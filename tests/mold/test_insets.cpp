@@ -81,3 +81,34 @@ TEST_CASE("an inset that lies beside the body is refused") {
     CHECK_THROWS_AS(with_inset(bar, beside, 2), Error);
     CHECK_THROWS_AS(with_inset(bar, turned_inside_out(bar), 2), Error);
 }
+
+TEST_CASE("an inset too thin for its cells is not said to lie outside the body") {
+    const TriMesh bar = box_mesh({-0.05, -0.01, -0.01}, {0.05, 0.01, 0.01});
+    const auto told = [&](const TriMesh& solid) {
+        std::vector<std::string> findings;
+        MoldSettings settings;
+        settings.across = 4;
+        try {
+            mold(bar, Material{}, settings, {{solid, Material{}}}, &findings);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return findings.empty() ? std::string() : findings.at(0);
+    };
+    // Cells of 5 mm; a slab across half of the section.
+    const auto slab = [&](double thickness, double from) {
+        return told(box_mesh({0.001, from, -0.005}, {0.001 + thickness, 0.005, 0.005}));
+    };
+    CHECK(slab(4e-6, -0.005) ==
+          "cannot mold: inset 1 is less than a thousandth of each cell that it lies in");
+    CHECK(slab(20e-6, -0.005).empty());
+    // A tenth of a cell more on one side.
+    CHECK(slab(40e-6, -0.0055) ==
+          "4.76 % of inset 1 is less than a thousandth of its cell and is left out");
+    CHECK(told(box_mesh({1, 1, 1}, {2, 2, 2})) ==
+          "cannot mold: inset 1 lies outside the work-piece");
+    CHECK(told(box_mesh({0.04, -0.01, -0.01}, {0.06, 0.01, 0.01})) ==
+          "50 % of inset 1 lies outside the work-piece and is left out");
+    // A box around what has rounded edges is meant to hold all of it.
+    CHECK(told(box_mesh({-0.05, -0.0102, -0.01}, {0.05, 0.0102, 0.01})).empty());
+}
