@@ -16,6 +16,7 @@
 #include "pipeline/kept_run.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage.h"
+#include "pipeline/stage_machine.h"
 #include "pipeline/stage_products.h"
 
 namespace swage {
@@ -139,6 +140,10 @@ class SimulationRun {
         if (context_.directory.is_changed()) {
             // What is told of the start foresees later stages too.
             reached.start_warning = molded(context_, std::move(at_start)).start_warning;
+            for (int n = 0; n < reached.stages; ++n) {
+                forget_foreseen(reached.start_warning,
+                                context_.scene.stage[static_cast<std::size_t>(n)]);
+            }
         }
         return reached;
     }
@@ -204,7 +209,10 @@ class SimulationRun {
         }
     }
 
+    // Of a stage that could be set up.
     void take(StageOutcome outcome) {
+        forget_foreseen(reached_.start_warning,
+                        context_.scene.stage[static_cast<std::size_t>(reached_.stages)]);
         reached_.stage.push_back(std::move(outcome.record));
         reached_.steps += outcome.steps;
         std::move(outcome.warning.begin(), outcome.warning.end(),

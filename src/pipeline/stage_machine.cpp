@@ -15,6 +15,11 @@ std::string in_stage(const std::string& sentence, const StageSpec& stage) {
     return fmt::format("{} (stage \"{}\")", sentence, stage.name);
 }
 
+// Tells which stage a sentence foresees.
+std::string end_of_foreseen(const StageSpec& stage) {
+    return fmt::format(" (stage \"{}\", for the work-piece before the first stage)", stage.name);
+}
+
 std::vector<Mistake> placed(const StageSpec& stage, const ParameterError& error) {
     std::vector<Mistake> mistakes;
     for (const auto& [parameter, sentence, place] : error.mistakes()) {
@@ -62,27 +67,30 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
 }
 
 std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
-                                           const Box& skin) {
+                                           const Box& skin, const std::vector<Material>& beside) {
     std::vector<std::string> mistakes;
-    const auto add = [&](const Mistake& mistake) {
-        mistakes.push_back(mistake_text(mistake) + " (for the work-piece before the first stage)");
-    };
     for (std::size_t n = 1; n < scene.stage.size(); ++n) {
         const StageSpec& stage = scene.stage[n];
         try {
-            const WorkFrame frame =
-                at_stage(stage, [&] { return stage_frame(stage, work_piece, skin); });
-            resolve_parameters(stage.machine, stage.parameter,
-                               work_piece_variables(work_piece, frame));
-        } catch (const ParameterError& error) {
-            for (const Mistake& mistake : placed(stage, error)) add(mistake);
+            stage_machine(stage, work_piece, beside, scene.duration_of(stage), skin);
         } catch (const SceneError& error) {
-            for (const Mistake& mistake : error.mistakes()) add(mistake);
+            for (const Mistake& mistake : error.mistakes()) {
+                std::string text = mistake_text(mistake);
+                const std::string known = in_stage("", stage);
+                if (text.ends_with(known)) text.resize(text.size() - known.size());
+                mistakes.push_back(text + end_of_foreseen(stage));
+            }
         } catch (const Error&) {
-            // An expression without a value here may have one at the work-piece of then.
+            // Another work-piece may have what this one wants for.
         }
     }
     return mistakes;
+}
+
+void forget_foreseen(std::vector<std::string>& warnings, const StageSpec& stage) {
+    std::erase_if(warnings, [end = end_of_foreseen(stage)](const std::string& one) {
+        return one.ends_with(end);
+    });
 }
 
 Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames, double spacing,

@@ -17,10 +17,14 @@ WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece, const
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
                       const std::vector<Material>& beside, const Box& skin);
 
-// What the machines of all stages but the first would say against their parameters, and how they
-// are to stand, at the work-piece as it is before the first.
+// What keeps the machines of all stages but the first from being set up at the work-piece as it is
+// before the first; at that of then they may be.
 std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
-                                           const Box& skin);
+                                           const Box& skin,
+                                           const std::vector<Material>& beside);
+
+// Takes out what has been foreseen of a stage, which has been set up by now.
+void forget_foreseen(std::vector<std::string>& warnings, const StageSpec& stage);
 
 // Its way over so many frames, as straight as that spacing of its matter asks for [m], and its
 // drives along it (machines/legs.h). Throw SceneError where an expression has no value at some

@@ -62,8 +62,8 @@ std::vector<NamedMatter> named(const std::vector<WorkPiece>& bodies) {
 std::vector<std::string> warnings_of_bodies(const SceneSpec& scene,
                                             const std::vector<NamedMatter>& bodies) {
     std::vector<std::string> told = start_overlaps(bodies);
-    const std::vector<std::string> mistakes =
-        foreseen_mistakes(scene, *bodies.front().matter, bodies.front().skin);
+    const std::vector<std::string> mistakes = foreseen_mistakes(
+        scene, *bodies.front().matter, bodies.front().skin, materials_beside(bodies));
     told.insert(told.end(), mistakes.begin(), mistakes.end());
     return told;
 }
