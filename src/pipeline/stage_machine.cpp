@@ -72,7 +72,7 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
     for (std::size_t n = 1; n < scene.stage.size(); ++n) {
         const StageSpec& stage = scene.stage[n];
         try {
-            stage_machine(stage, work_piece, beside, scene.duration_of(stage), skin);
+            stage_machine(stage, work_piece, beside, skin);
         } catch (const SceneError& error) {
             for (const Mistake& mistake : error.mistakes()) {
                 std::string text = mistake_text(mistake);

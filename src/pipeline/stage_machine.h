@@ -20,8 +20,7 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
 // What keeps the machines of all stages but the first from being set up at the work-piece as it is
 // before the first; at that of then they may be.
 std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
-                                           const Box& skin,
-                                           const std::vector<Material>& beside);
+                                           const Box& skin, const std::vector<Material>& beside);
 
 // Takes out what has been foreseen of a stage, which has been set up by now.
 void forget_foreseen(std::vector<std::string>& warnings, const StageSpec& stage);

@@ -12,7 +12,7 @@
 #include "geometry/near_pairs.h"
 #include "machines/touch.h"
 #include "matter/cell_middle.h"
-#include "matter/touch_points.h"
+#include "pipeline/touching_points.h"
 #include "sim/rest_surface.h"
 
 namespace swage {
@@ -54,17 +54,6 @@ MatterCells matter_cells(const Aggregate& matter) {
         cells.centroid.push_back(middle + pose.turn(off));
     }
     return cells;
-}
-
-std::vector<Vec3> touching_points(const Aggregate& matter) {
-    const TouchPoints touch(matter);
-    std::vector<Vec3> points;
-    for (int p = 0; p < static_cast<int>(touch.size()); ++p) {
-        if (!touch.meets(p)) continue;
-        points.push_back(
-            touch.points().position(static_cast<std::size_t>(p), matter.particle_position));
-    }
-    return points;
 }
 
 // How a body stands to a plate that is drawn endless. The work-piece's middle says which of its

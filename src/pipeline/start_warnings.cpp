@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "pipeline/folded_bodies.h"
 #include "pipeline/stage_machine.h"
+#include "pipeline/start_doubts.h"
 #include "pipeline/start_overlap.h"
 
 namespace swage {
@@ -65,6 +68,7 @@ std::vector<std::string> warnings_of_bodies(const SceneSpec& scene,
     const std::vector<std::string> mistakes = foreseen_mistakes(
         scene, *bodies.front().matter, bodies.front().skin, materials_beside(bodies));
     told.insert(told.end(), mistakes.begin(), mistakes.end());
+    for (std::string& doubt : doubts_of_start(scene, bodies)) told.push_back(std::move(doubt));
     return told;
 }
 

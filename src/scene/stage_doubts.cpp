@@ -41,15 +41,14 @@ bool is_zero_throughout(const Expression& one, double duration) {
     }
 }
 
-void judge_gravity(const Node& node, const StageSpec& stage, double duration,
-                   MistakeList& mistakes) {
+void judge_gravity(const Node& node, const StageSpec& stage, MistakeList& mistakes) {
     const Entry* given = node.find("gravity_strength");
     if (given == nullptr || stage.sim.gravity == Vec3::Zero()) return;
-    if (!is_zero_throughout(stage.machine.gravity_strength, duration)) return;
+    if (!is_zero_throughout(stage.machine.gravity_strength, stage.duration)) return;
     mistakes.warn(given->value.place, "gravity does nothing: its strength is 0 throughout");
 }
 
-void judge_loads(const Node& node, const StageSpec& stage, double duration, MistakeList& mistakes) {
+void judge_loads(const Node& node, const StageSpec& stage, MistakeList& mistakes) {
     const Entry* given = node.find("load");
     const std::size_t loads = given != nullptr ? given->value.item.size() : 0;
     if (loads > stage.machine.load.size()) return;
@@ -59,7 +58,7 @@ void judge_loads(const Node& node, const StageSpec& stage, double duration, Mist
         const bool is_none = load.force
                                  ? std::all_of(load.force->begin(), load.force->end(), is_zero)
                                  : is_zero(load.pressure);
-        if (!is_none && !is_zero_throughout(load.strength, duration)) continue;
+        if (!is_none && !is_zero_throughout(load.strength, stage.duration)) continue;
         mistakes.warn(given->value.item[n].place,
                       fmt::format("load {} does nothing: its {} is 0{}", load.name,
                                   !is_none     ? "strength"
@@ -110,8 +109,8 @@ void warn_of_doubtful_stages(const Node& root, const SceneSpec& scene, MistakeLi
     for (std::size_t s = 0; s < scene.stage.size(); ++s) {
         if (stages == nullptr || s >= stages->value.item.size()) break;
         const StageSpec& stage = scene.stage[s];
-        judge_loads(stages->value.item[s], stage, scene.duration_of(stage), mistakes);
-        judge_gravity(stages->value.item[s], stage, scene.duration_of(stage), mistakes);
+        judge_loads(stages->value.item[s], stage, mistakes);
+        judge_gravity(stages->value.item[s], stage, mistakes);
     }
     judge_downs(root, scene, mistakes);
 }

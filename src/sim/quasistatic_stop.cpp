@@ -13,6 +13,7 @@ namespace swage {
 
 namespace {
 
+constexpr const char* kNoContact = "no tool in contact";  // RestingContacts::hardest_point()
 constexpr double kFarAway = 2;  // spacings that a body without rest has gone
 
 bool has_broken(const Aggregate& matter) {
@@ -35,6 +36,17 @@ std::string borne_last(const Apparatus& apparatus, const Drive& at) {
         text += fmt::format("{}{} of {}", n > 0 ? ", " : " under ", size, load.name);
     }
     return text;
+}
+
+// Whether forces draw away from what it lies on, by its weight, a body that nothing takes hold of.
+bool is_lifted(const Apparatus& apparatus, const Drive& at, const Vec3& weight) {
+    if (!apparatus.grip.empty() || apparatus.tool.empty()) return false;
+    Vec3 sum = weight;
+    for (std::size_t n = 0; n < apparatus.load.size(); ++n) {
+        if (apparatus.load[n].force.empty()) return false;
+        for (const Vec3& one : apparatus.load[n].force) sum += at.load_strength[n] * one;
+    }
+    return sum.dot(weight) < 0;
 }
 
 }  // namespace
@@ -67,6 +79,11 @@ void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
     const char* advice = "raise frames or tolerance of the stage";
     if (tried.converged) {
         advice = "a cell is crushed flat: raise [mold] across, or bend and twist less";
+    } else if (met.starts_with(kNoContact) &&
+               is_lifted(apparatus_, move.to, matter_.mass() * forces_.pushes.gravity(move.to))) {
+        advice =
+            "no tool touches it any more: the loads lift it off, as nothing holds it; hold it, "
+            "lower them, or let it move with solver = \"explicit\"";
     } else if (forces_.pushes.count() > 0 && matter_.yields()) {
         advice =
             "if the matter flows under loads that it cannot bear, lower these; otherwise raise "

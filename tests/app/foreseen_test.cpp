@@ -79,3 +79,54 @@ TEST_CASE("what a run has disproved of the warnings of its start is not in its r
     CHECK(says(run.err, "overhang = 21 cm is out of range"));
     CHECK(!says(bar.record().at("warnings").dump(), "out of range"));
 }
+
+TEST_CASE("a body that cannot reach the floor in its stage is told how long it would fall") {
+    const auto told = [](const std::string& stage, const std::string& keys = {}) {
+        return told_of(Bar("[[stage]]\nmachine = \"floor\"\nframes = 2\ndrop = \"2 m\"\n" + stage,
+                           "rubber", keys));
+    };
+    const std::string weight = "gravity = 9.81\n", brief = "duration = \"0.3 s\"\n";
+    const std::string falls = told(weight + brief);
+    INFO(falls);
+    CHECK(says(falls, "falls for 0.639 s before it touches floor, and the stage takes 0.3 s"));
+    CHECK(!says(told(weight + "duration = \"0.7 s\"\n"), "before it touches"));
+    CHECK(!says(told(weight + brief, "velocity = [0, \"-7 m/s\", 0]\n"), "touch"));
+    CHECK(says(told(weight + brief, "velocity = [0, \"3 m/s\", 0]\n"),
+               "falls for 1.01 s before it touches floor"));
+    CHECK(says(told(brief, "velocity = [0, \"3 m/s\", 0]\n"),
+               "never touches floor: nothing brings it there"));
+    CHECK(says(told(brief, "velocity = [\"3 m/s\", 0, 0]\n"), "never touches floor"));
+    CHECK(!says(told(brief, "velocity = [0, \"-7 m/s\", 0]\n"), "touch"));
+    // A slope is as near along its normal only, and what rotates may reach down.
+    CHECK(!says(told(weight + "duration = \"0.63 s\"\n", "spin = [0, 0, \"9 rad/s\"]\n"), "touch"));
+    CHECK(says(told(weight + "slope = \"60 deg\"\nduration = \"0.7 s\"\n"), "falls for 0.903 s"));
+    CHECK(!says(told(weight + brief + "[[stage.load]]\nforce = [0, \"-900 N\", 0]\non = \"top\"\n"),
+                "touch"));
+}
+
+TEST_CASE("loads that lift off what nothing holds are told, and a run says that it is lifted off") {
+    const auto bar = [](const std::string& force, const std::string& machine = "shelf",
+                        const std::string& gravity = "9.81") {
+        return Bar("[[stage]]\nmachine = \"" + machine + "\"\ngravity = " + gravity +
+                       "\nframes = 4\n[[stage.load]]\non = \"top\"\nforce = " + force + "\n",
+                   "structural_steel");
+    };
+    const Bar lifted = bar("[0, \"50 N\", 0]");
+    const std::string told = told_of(lifted);
+    INFO(told);
+    CHECK(says(told,
+               "1-shelf: the loads lift the work-piece with up to 50 N, it weighs 6.16 N, and "
+               "nothing holds it down"));
+    CHECK(!says(told_of(bar("[0, \"5 N\", 0]")), "nothing holds it down"));
+    CHECK(!says(told_of(bar("[0, \"-50 N\", 0]")), "nothing holds it down"));
+    CHECK(!says(told_of(bar("[0, \"50 N\", 0]", "hold")), "nothing holds it down"));
+    const std::string light = "without gravity nothing presses the work-piece onto what it lies on";
+    CHECK(says(told_of(bar("[\"5 N\", 0, 0]", "shelf", "0")), light));
+    CHECK(!says(told_of(bar("[0, \"-5 N\", 0]", "shelf", "0")), light));
+    CHECK(!says(told_of(bar("[\"5 N\", 0, 0]", "bend", "0")), light));
+    const Outcome run = lifted.run();
+    INFO(run.err);
+    CHECK(run.code == 6);
+    CHECK(!says(run.err, "if the matter flows"));
+    CHECK(says(run.err, "no tool touches it any more: the loads lift it off"));
+}

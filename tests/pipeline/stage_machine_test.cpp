@@ -153,10 +153,10 @@ TEST_CASE(
     REQUIRE(reading.scene);
     const Material& rubber = reading.scene->work_piece().material;
     const std::vector<std::string> told =
-        foreseen_mistakes(*reading.scene, test::make_block(16, 4, 4, 0.1, rubber), Box{});
+        foreseen_mistakes(*reading.scene, test::make_block(16, 4, 4, 0.1, rubber), Box{}, {});
     REQUIRE(told.size() == 1);
     CHECK(told[0].find("s.toml:") != std::string::npos);
     CHECK(told[0].find("up = \"x\"") != std::string::npos);
-    CHECK(
-        foreseen_mistakes(*reading.scene, test::make_block(4, 4, 16, 0.1, rubber), Box{}).empty());
+    CHECK(foreseen_mistakes(*reading.scene, test::make_block(4, 4, 16, 0.1, rubber), Box{}, {})
+              .empty());
 }
