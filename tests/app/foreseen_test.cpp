@@ -5,7 +5,7 @@
 #include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
 using swage::Json;

@@ -9,7 +9,7 @@
 #include "pipeline/cost.h"
 #include "scene/read_scene.h"
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
+#include "tests/scene/scene_folder.h"
 
 using namespace swage;
 
