@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "app/command.h"
 #include "app/lines.h"
 #include "app/scene_argument.h"
+#include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "base/whole.h"
@@ -41,10 +43,11 @@ std::string stiffness_text(const BodyCost& body, double cells) {
                        100 * accuracy.bending, 100 * accuracy.torsion, enough);
 }
 
+constexpr const char* kOfSprings =
+    "springs are right in stretching only; they are too stiff in bending and torsion";
+
 std::vector<std::string> accuracy_texts(const BodySpec& spec, const BodyCost& body) {
-    if (spec.material.mechanics != Mechanics::cells) {
-        return {"springs are right in stretching only; they are too stiff in bending and torsion"};
-    }
+    if (spec.material.mechanics != Mechanics::cells) return {kOfSprings};
     std::vector<std::string> texts;
     if (body.has_thin_parts()) {
         texts = {fmt::format("elastic stiffness of the whole, {:.3g} cells across, where thin "
@@ -57,6 +60,7 @@ std::vector<std::string> accuracy_texts(const BodySpec& spec, const BodyCost& bo
         texts = {fmt::format("elastic stiffness of a part {:.3g} cells thick: {}", body.thickness,
                              stiffness_text(body, body.thickness))};
     }
+    if (!spec.inset.empty()) texts.push_back("that is of one material, without its insets");
     if (const int layers = body.whole_layers(); layers > 0) {
         texts.push_back(
             fmt::format("the thinnest side is {:.3g} cells, so its outermost layers are filled to "
@@ -73,10 +77,18 @@ std::vector<std::string> accuracy_texts(const BodySpec& spec, const BodyCost& bo
     return texts;
 }
 
-Json accuracy_json(const BodyCost& body, double cells) {
+Json accuracy_json(const BodySpec& spec, const BodyCost& body, double cells) {
+    if (spec.material.mechanics != Mechanics::cells) {
+        return {{"of", "elastic stiffness"},
+                {"cells", cells},
+                {"bending", nullptr},
+                {"torsion", nullptr},
+                {"note", kOfSprings}};
+    }
     const Accuracy accuracy = accuracy_at(cells);
     return {{"of", "elastic stiffness"},
             {"cells", cells},
+            {"without_insets", !spec.inset.empty()},
             {"bending", accuracy.bending},
             {"torsion", accuracy.torsion},
             {"across_for_percent", across_for_percent(body, cells)}};
@@ -87,10 +99,27 @@ std::string range_text(const CostRange& range, std::string (*text)(double)) {
     return text(range.least) + " to " + text(range.most);
 }
 
+// Why a stage has its solver where the scene does not name it; empty: it does.
+std::string why_solver(const SceneSpec& scene, std::size_t n) {
+    const std::string key = fmt::format("stage.{}.solver", n + 1);
+    const auto says = [&](const Said& one) { return one.key == key; };
+    if (std::any_of(scene.said.begin(), scene.said.end(), says)) return {};
+    const StageSpec& stage = scene.stage[n];
+    if (!in_motion(stage.sim.solver)) return "nothing asks for motion";
+    if (scene.body.size() > 1) return "there are several bodies";
+    if (scene.work_piece().start.moves()) {
+        return scene.work_piece().name + " starts with a velocity or spin";
+    }
+    return fmt::format("machine {} is for motion", stage.machine.name);
+}
+
+double slower_than_real(const SceneSpec& scene, const StageSpec& stage) {
+    return double(stage.frames) / scene.render.frame_rate.value() / stage.duration;
+}
+
 // How fast the film plays a stage that takes the time that it says.
 std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
-    const double played = double(stage.frames) / scene.render.frame_rate.value(),
-                 slower = played / stage.duration;
+    const double slower = slower_than_real(scene, stage);
     const auto times = [](double ratio) {
         return (ratio < 100 ? fmt::format("{:.3g}", ratio) : count_text(ratio)) + " times";
     };
@@ -143,6 +172,12 @@ void add_matter(Lines& lines, const SceneSpec& scene, const std::vector<InputMes
 
 void add_stages(Lines& lines, const SceneSpec& scene, const RunCost& cost) {
     lines.add("stages", std::to_string(scene.stage.size()));
+    for (std::size_t n = 0; n < scene.stage.size(); ++n) {
+        const std::string whose = scene.stage.size() == 1 ? "" : scene.stage[n].name + ": ";
+        const std::string why = why_solver(scene, n);
+        lines.add("solver",
+                  whose + name_of(scene.stage[n].sim.solver) + (why.empty() ? "" : ", as " + why));
+    }
     for (const MachinePlace& place : cost.place) {
         const bool is_later = &place != &cost.place.front();
         const std::string whose = cost.place.size() == 1 ? "" : place.stage + ": ";
@@ -150,6 +185,7 @@ void add_stages(Lines& lines, const SceneSpec& scene, const RunCost& cost) {
         if (!place.axes.empty()) lines.add("axes", whose + place.axes + when);
         if (!place.tools.empty()) lines.add("side", whose + place.tools + when);
         for (const std::string& load : place.load) lines.add("load", whose + load + when);
+        for (const std::string& push : place.push) lines.add("load", whose + push + when);
         for (const std::string& limit : place.limit) lines.add("limit", whose + limit);
     }
     lines.add("frames", count_text(cost.frames));
@@ -161,8 +197,8 @@ void add_stages(Lines& lines, const SceneSpec& scene, const RunCost& cost) {
 }
 
 std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                      const RunCost& cost) {
-    Lines lines(scene.name + ": no mistakes");
+                      const RunCost& cost, bool is_refused) {
+    Lines lines(scene.name + ": no mistakes" + (is_refused ? ", but it cannot run here" : ""));
     add_matter(lines, scene, input, cost);
     add_stages(lines, scene, cost);
     lines.add("steps", range_text(cost.steps, count_text));
@@ -173,7 +209,52 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     lines.add("time", range_text(cost.seconds, seconds_text) +
                           (cost.hangs_on.empty() ? "" : ", depending on " + cost.hangs_on));
     for (const std::string& note : cost.note) lines.add("note", note);
+    for (const std::string& note : later_notes(cost.place)) lines.add("note", note);
     return lines.text();
+}
+
+// Counts of what there is in whole numbers.
+Json with_whole_counts(Json cost) {
+    constexpr double kMost = 9e18;
+    const auto round = [](Json& in, const char* key) {
+        const double value = in.at(key).get<double>();
+        if (std::abs(value) < kMost) in[key] = std::llround(value);
+    };
+    for (const char* key :
+         {"cells", "particles", "connections", "matter_bytes", "memory_bytes", "disk_bytes_least",
+          "disk_bytes", "steps", "steps_least", "steps_most"}) {
+        round(cost, key);
+    }
+    for (Json& body : cost.at("bodies")) round(body, "cells");
+    return cost;
+}
+
+Json stages_json(const SceneSpec& scene, const RunCost& cost) {
+    Json stages = places_json(cost.place);  // empty where nothing has been molded
+    for (std::size_t n = 0; n < scene.stage.size(); ++n) {
+        const StageSpec& stage = scene.stage[n];
+        Json& json = stages[n];
+        json["name"] = stage.name;
+        json["solver"] = name_of(stage.sim.solver);
+        if (const std::string why = why_solver(scene, n); !why.empty()) {
+            json["solver_chosen_as"] = why;
+        }
+        if (!in_motion(stage.sim.solver)) continue;
+        json["film"] = {{"frames", stage.frames},
+                        {"frame_rate", scene.render.frame_rate.value()},
+                        {"duration_s", stage.duration},
+                        {"slower", slower_than_real(scene, stage)}};
+    }
+    return stages;
+}
+
+std::optional<Error> refusal_of(const RunCost& cost, const RunOptions& options) {
+    try {
+        refuse_excess(cost, options);
+    } catch (const Error& error) {
+        return error;
+    }
+    return std::nullopt;
 }
 
 // Of the work-piece as "accuracy", of bodies beside it in their list; strengths of all in one.
@@ -181,12 +262,10 @@ void add_accuracy(const SceneSpec& scene, const RunCost& cost, Json& json) {
     for (std::size_t b = 0; b < scene.body.size(); ++b) {
         const BodySpec& spec = scene.body[b];
         const BodyCost& body = cost.body[b];
-        if (spec.material.mechanics == Mechanics::cells) {
-            Json& whole = b == 0 ? json : json["bodies"][spec.name];
-            whole["accuracy"] = accuracy_json(body, body.thickness);
-            if (body.has_thin_parts()) {
-                whole["accuracy_of_whole"] = accuracy_json(body, body.across);
-            }
+        Json& whole = b == 0 ? json : json["bodies"][spec.name];
+        whole["accuracy"] = accuracy_json(spec, body, body.thickness);
+        if (body.has_thin_parts() && spec.material.mechanics == Mechanics::cells) {
+            whole["accuracy_of_whole"] = accuracy_json(spec, body, body.across);
         }
         for (const Material* of : spec.materials()) {
             const Resolved strength = resolved_strength(*of, body.spacing, body.across);
@@ -215,17 +294,20 @@ int check(const CheckArguments& given) {
     try {
         const std::vector<InputMesh> input = read_input_meshes(*reading.scene);
         const RunCost cost = count_cost(*reading.scene, input, options);
+        const std::optional<Error> refusal = refusal_of(cost, options);
         for (const InputMesh& one : input) json["meshes"].push_back(mesh_json(one));
-        json["cost"] = cost_json(cost);
-        json["stages"] = places_json(cost.place);
+        json["cost"] = with_whole_counts(cost_json(cost));
+        json["stages"] = stages_json(*reading.scene, cost);
         add_accuracy(*reading.scene, cost, json);
         if (!given.json) {
             for (const auto* untold : {&cost.warning.mold, &cost.warning.bodies}) {
                 for (const std::string& warning : *untold) log_warning("{}", warning);
             }
-            if (log_level() != LogLevel::quiet) put_out(cost_text(*reading.scene, input, cost));
+            if (log_level() != LogLevel::quiet) {
+                put_out(cost_text(*reading.scene, input, cost, refusal.has_value()));
+            }
         }
-        refuse_excess(cost, options);
+        if (refusal) throw Error(*refusal);
     } catch (const Error& error) {
         if (!given.json) throw;
         std::vector<Mistake> mistakes = reading.mistakes;

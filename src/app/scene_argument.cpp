@@ -2,12 +2,29 @@
 #include "app/scene_argument.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
 
 namespace swage {
+
+namespace {
+
+// Who gives a run where a scene is wanted may want to know of it.
+void refuse_run(const std::filesystem::path& file) {
+    constexpr const char* kRecord = "run.json";
+    std::error_code none;
+    const bool is_folder = std::filesystem::is_directory(file, none);
+    if (!std::filesystem::is_regular_file(is_folder ? file / kRecord : file, none)) return;
+    if (!is_folder && file.filename() != kRecord) return;
+    const std::filesystem::path folder = is_folder ? file : file.parent_path();
+    fail(ExitCode::scene, "{} is a run, no scene: `swage info {}` tells of it", file.string(),
+         folder.empty() ? "." : folder.string());
+}
+
+}  // namespace
 
 void add_assets_option(CLI::App& command, std::string& assets) {
     command.add_option("--assets", assets, "folder that contains machines/ and assets/")
@@ -33,6 +50,7 @@ void add_scene_argument(CLI::App& command, SceneArgument& argument) {
 }
 
 SceneReading read_scene_argument(const SceneArgument& argument) {
+    refuse_run(argument.file);
     return read_scene(argument.file, argument.overrides, asset_paths(argument.assets));
 }
 

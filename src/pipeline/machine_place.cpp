@@ -15,6 +15,7 @@
 #include "geometry/mesh_check.h"
 #include "pipeline/limit_watch.h"
 #include "pipeline/stage_machine.h"
+#include "scene/way_text.h"
 
 namespace swage {
 
@@ -55,6 +56,17 @@ Json part_json(const WorkFrame& frame, const SurfaceComponent& part) {
             {"middle_by_machine_m", {at[0], at[1], at[2]}}};
 }
 
+Vec3 whole_force(const Load& load) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& one : load.force) sum += one;
+    return sum;
+}
+
+// A sum of many parts is not all digits of what was given.
+std::string rounded_text(double value, Quantity quantity) {
+    return quantity_text(std::stod(fmt::format("{:.4g}", value)), quantity);
+}
+
 }  // namespace
 
 std::string axes_text(const WorkFrame& frame) {
@@ -91,7 +103,14 @@ std::vector<std::string> load_texts(const Machine& machine) {
 Json loads_json(const Machine& machine) {
     Json json = Json::array();
     for (std::size_t n = 0; n < machine.load_on.size(); ++n) {
-        Json load = {{"name", machine.apparatus.load[n].name}};
+        const Load& pushes = machine.apparatus.load[n];
+        Json load = {{"name", pushes.name}};
+        if (pushes.force.empty()) {
+            load["pressure_Pa"] = pushes.pressure;
+        } else {
+            const Vec3 force = whole_force(pushes);
+            load["force_N"] = {force[0], force[1], force[2]};
+        }
         load.update(part_json(machine.frame, whole_of(machine.load_on[n])));
         load["parts"] = Json::array();
         for (const SurfaceComponent& part : machine.load_on[n]) {
@@ -100,6 +119,23 @@ Json loads_json(const Machine& machine) {
         json.push_back(load);
     }
     return json;
+}
+
+std::vector<std::string> push_texts(const Machine& machine) {
+    std::vector<std::string> texts;
+    for (const Load& load : machine.apparatus.load) {
+        const Vec3 force = whole_force(load);
+        if (load.force.empty()) {
+            texts.push_back(fmt::format("{} {} with {}", load.name,
+                                        load.pressure < 0 ? "sucks" : "presses",
+                                        rounded_text(std::abs(load.pressure), Quantity::stress)));
+        } else if (force.norm() > 0) {
+            texts.push_back(fmt::format("{} pushes with {} along the world's {}", load.name,
+                                        rounded_text(force.norm(), Quantity::force),
+                                        way_text(force.normalized())));
+        }
+    }
+    return texts;
 }
 
 constexpr double kOneSide = 0.99;  // cosine of what still is the same side
@@ -147,36 +183,70 @@ std::string tools_text(const StageSpec& stage, const WorkFrame& frame) {
     return text;
 }
 
+namespace {
+
+// As if the work-piece came to it as it is now; where it cannot be set up so, its frame alone,
+// unless there are loads. None: not even that.
+std::optional<Machine> later_machine(const StageSpec& stage, const Aggregate& work_piece,
+                                     const std::vector<Material>& beside, const Box& skin) {
+    try {
+        return stage_machine(stage, work_piece, beside, skin);
+    } catch (const Error&) {
+    }
+    if (!stage.machine.load.empty()) return std::nullopt;
+    try {
+        Machine machine;
+        machine.frame = stage_frame(stage, work_piece, skin);
+        return machine;
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
                                          const Aggregate& work_piece,
                                          const std::vector<Material>& beside, const Box& skin) {
     std::vector<MachinePlace> places;
     for (const StageSpec& stage : scene.stage) {
-        try {
-            const bool is_first = places.empty();
-            Machine later;
-            if (!is_first && stage.machine.load.empty()) {
-                later.frame = stage_frame(stage, work_piece, skin);
-            } else if (!is_first) {
-                later = stage_machine(stage, work_piece, beside, skin);
-            }
-            const Machine& machine = is_first ? first : later;
-            places.push_back({stage.name,
-                              axes_text(machine.frame),
-                              load_texts(machine),
-                              axes_json(machine.frame),
-                              loads_json(machine),
-                              {},
-                              {},
-                              tools_text(stage, machine.frame)});
-        } catch (const Error&) {
-            // It may stand at the work-piece of then.
-            places.push_back({.stage = stage.name});
+        std::optional<Machine> later;
+        if (!places.empty()) {
+            later = later_machine(stage, work_piece, beside, skin);
         }
-        places.back().limit = limit_texts(stage.machine);
-        places.back().limits_json = limits_json(stage.machine);
+        const Machine* machine = places.empty() ? &first : later ? &*later : nullptr;
+        MachinePlace& place = places.emplace_back();
+        place.stage = stage.name;
+        place.limit = limit_texts(stage.machine);
+        place.limits_json = limits_json(stage.machine);
+        if (machine == nullptr) continue;
+        place.axes = axes_text(machine->frame);
+        place.axes_json = axes_json(machine->frame);
+        place.load = load_texts(*machine);
+        place.loads_json = loads_json(*machine);
+        place.push = push_texts(*machine);
+        place.tools = tools_text(stage, machine->frame);
+        place.note = machine->notes;
     }
     return places;
+}
+
+std::vector<std::string> later_notes(const std::vector<MachinePlace>& places) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> found;
+    for (std::size_t s = 1; s < places.size(); ++s) {
+        for (const std::string& note : places[s].note) {
+            auto same = std::find_if(found.begin(), found.end(),
+                                     [&](const auto& one) { return one.first == note; });
+            if (same == found.end()) same = found.insert(same, {note, {}});
+            same->second.push_back(places[s].stage);
+        }
+    }
+    std::vector<std::string> told;
+    for (const auto& [note, stages] : found) {
+        told.push_back(fmt::format("{}: {} (for the work-piece before the first stage)",
+                                   joined(stages, " and "), note));
+    }
+    return told;
 }
 
 Json places_json(const std::vector<MachinePlace>& places) {
@@ -186,6 +256,7 @@ Json places_json(const std::vector<MachinePlace>& places) {
                         {"axes", place.axes_json},
                         {"tools", place.tools},
                         {"loads", place.loads_json},
+                        {"notes", place.note},
                         {"limits", place.limits_json}});
     }
     return json;

@@ -19,7 +19,9 @@ Json axes_json(const WorkFrame& frame);  // ["y", "z", "x"]
 // axes from the middle of the work-piece's box, as the load's own `from` and `to`; in JSON by the
 // world's too.
 std::vector<std::string> load_texts(const Machine& machine);
-Json loads_json(const Machine& machine);
+Json loads_json(const Machine& machine);  // and what they push with at full strength
+// For each load what it pushes with at full strength, and which way in the world.
+std::vector<std::string> push_texts(const Machine& machine);
 
 // Of a stage before the run; of any but the first, as if the work-piece came to it as it is now.
 // Empty and null where the machine cannot be set up so.
@@ -30,7 +32,9 @@ struct MachinePlace {
     Json axes_json{}, loads_json{};
     std::vector<std::string> limit{};  // as limit_texts()
     Json limits_json{};
-    std::string tools{};  // as tools_text()
+    std::string tools{};              // as tools_text()
+    std::vector<std::string> note{};  // Machine::notes
+    std::vector<std::string> push{};  // as push_texts()
 };
 
 // From which side of the world the tools come that are moved to the work-piece, and what sets that;
@@ -41,6 +45,11 @@ std::string tools_text(const StageSpec& stage, const WorkFrame& frame);
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
                                          const Aggregate& work_piece,
                                          const std::vector<Material>& beside, const Box& skin);
+
+// What the machines of all stages but the first say of the work-piece as it is now, each sentence
+// once, with its stages.
+std::vector<std::string> later_notes(const std::vector<MachinePlace>& places);
+
 Json places_json(const std::vector<MachinePlace>& places);
 
 }  // namespace swage

@@ -198,3 +198,108 @@ TEST_CASE("of many bodies that are alike each thing is said once, by check and b
     CHECK(told.at("meshes").size() == 9);
     CHECK(told.at("cost").at("bodies").size() == 9);
 }
+
+TEST_CASE("check tells each stage's solver and why, what its loads push, and how the film goes") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml";
+    swage::write_obj(scratch.path() / "bar.obj", swage::box_mesh({0, 0, 0}, {0.02, 0.2, 0.02}));
+    const auto check = [&](const std::string& stages, bool json = false) {
+        put_text(scene,
+                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\n"
+                 "across = 2\n" +
+                     stages);
+        std::vector<std::string> words = {"check", scene.string()};
+        if (json) words.push_back("--json");
+        return run_swage(words).out;
+    };
+    const auto has = [](const std::string& text, const std::string& line) {
+        return text.find(line) != std::string::npos;
+    };
+    const std::string hold =
+        "[[stage]]\nmachine = \"hold\"\n[[stage.load]]\nforce = [0, \"-0.1 N\", 0]\non = "
+        "\"right\"\n[[stage.load]]\npressure = \"2 kPa\"\non = \"top\"\n";
+    const std::string held = check(hold);
+    INFO(held);
+    CHECK(has(held, "  solver       quasistatic, as nothing asks for motion\n"));
+    CHECK(has(held, "  load         load_1 pushes with 100 mN along the world's -z\n"));
+    CHECK(has(held, "  load         load_2 presses with 2 kPa\n"));
+    const Json json = Json::parse(check(hold, true));
+    const Json& stage = json.at("stages").at(0);
+    CHECK(stage.at("solver") == "quasistatic");
+    CHECK(stage.at("solver_chosen_as") == "nothing asks for motion");
+    CHECK(std::abs(stage.at("loads").at(0).at("force_N").at(2).get<double>() + 0.1) < 1e-9);
+    CHECK(stage.at("loads").at(1).at("pressure_Pa") == 2000);
+    CHECK(json.at("cost").at("cells").is_number_integer());
+    CHECK(json.at("cost").at("steps_most").is_number_integer());
+    CHECK(json.at("cost").at("bodies").at(0).at("cells").is_number_integer());
+
+    const std::string bend = "[[stage]]\nmachine = \"bend\"\n";
+    const std::string other = "[[body]]\nfile = \"bar.obj\"\nat = [0, 1, 0]\n";
+    CHECK(has(check(other + bend), "  solver       explicit, as there are several bodies\n"));
+    CHECK(has(check("[[stage]]\nmachine = \"floor\"\ngravity = 9.81\n"),
+              "  solver       explicit, as machine floor is for motion\n"));
+    CHECK(has(check(bend + "solver = \"explicit\"\nduration = \"1 s\"\n" + bend),
+              "  solver       1-bend: explicit\n  solver       2-bend: quasistatic, as "));
+    const Json film = Json::parse(check(bend + "solver = \"explicit\"\nduration = \"1 s\"\n", true))
+                          .at("stages")
+                          .at(0)
+                          .at("film");
+    CHECK(film.at("frames") == 60);
+    CHECK(film.at("duration_s") == 1.0);
+    CHECK(film.at("slower").get<double>() == Approx(2));
+
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\nspin = [0, 0, 1]\n[material]\nname = \"rubber\"\n"
+             "mechanics = \"springs\"\n[mold]\nacross = 2\n" +
+                 bend);
+    CHECK(has(run_swage({"check", scene.string()}).out,
+              "  solver       explicit, as work-piece starts with a velocity or spin\n"));
+    const Json springs = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    CHECK(springs.at("accuracy").at("bending").is_null());
+    CHECK(has(springs.at("accuracy").at("note").get<std::string>(), "too stiff in bending"));
+}
+
+TEST_CASE("a scene that there is no room for is not said to be without mistakes and no more") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml";
+    swage::write_obj(scratch.path() / "bar.obj", swage::box_mesh({0, 0, 0}, {0.02, 0.2, 0.02}));
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\n"
+             "across = 400\ncell_limit = 2000000000\n[[stage]]\nmachine = \"bend\"\n");
+    const Outcome refused = run_swage({"check", scene.string()});
+    CHECK(refused.code == 7);
+    CHECK(refused.out.find("scene: no mistakes, but it cannot run here\n") == 0);
+}
+
+TEST_CASE("who checks a run is told what tells of it") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml", out = scratch.path() / "run";
+    swage::write_obj(scratch.path() / "bar.obj", swage::box_mesh({0, 0, 0}, {0.02, 0.2, 0.02}));
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\n"
+             "across = 2\n[[stage]]\nmachine = \"bend\"\nframes = 1\n");
+    REQUIRE(run_swage({"run", scene.string(), "--no-render", "--out", out.string()}).code == 0);
+    for (const fs::path& run : {out, out / "run.json"}) {
+        const Outcome told = run_swage({"check", run.string()});
+        INFO(told.err);
+        CHECK(told.code == 3);
+        CHECK(told.err.find("is a run, no scene: `swage info " + out.string() + "` tells of it") !=
+              std::string::npos);
+    }
+}
+
+TEST_CASE("the accuracy of a body with insets is said to be without them") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml";
+    swage::write_obj(scratch.path() / "bar.obj", swage::box_mesh({0, 0, 0}, {0.02, 0.2, 0.02}));
+    const auto told = [&](const std::string& inset) {
+        put_text(scene,
+                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\n"
+                 "across = 2\n" +
+                     inset + "[[stage]]\nmachine = \"bend\"\n");
+        return run_swage({"check", scene.string()}).out;
+    };
+    const std::string of = "of one material, without its insets";
+    CHECK(told("").find(of) == std::string::npos);
+    CHECK(told("[[inset]]\nname = \"lead\"\nto = [1, 0.5, 1]\n").find(of) != std::string::npos);
+}

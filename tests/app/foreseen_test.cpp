@@ -80,6 +80,17 @@ TEST_CASE("what a run has disproved of the warnings of its start is not in its r
     CHECK(!says(bar.record().at("warnings").dump(), "out of range"));
 }
 
+TEST_CASE("what later machines say of the body as molded is told with their stages, and once") {
+    const std::string bend =
+        "[[stage]]\nmachine = \"bend\"\nframes = 1\nangle = \"180 deg\"\nradius = \"6 cm\"\n";
+    const Bar bar("[[stage]]\nmachine = \"twist\"\nframes = 1\n" + bend + bend);
+    const std::string told = told_of(bar);
+    INFO(told);
+    CHECK(count_of(told, "the work-piece is short for this bend") == 1);
+    CHECK(says(told, "2-bend and 3-bend: the work-piece is short for this bend"));
+    CHECK(says(bar.json().at("stages").at(1).at("notes").dump(), "short for this bend"));
+}
+
 TEST_CASE("a body that cannot reach the floor in its stage is told how long it would fall") {
     const auto told = [](const std::string& stage, const std::string& keys = {}) {
         return told_of(Bar("[[stage]]\nmachine = \"floor\"\nframes = 2\ndrop = \"2 m\"\n" + stage,
