@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run takes of memory at its peak, by its parts. Measured as the most that a process of
-// `swage run` had resident; tests/verify/LIMITS.md has a table of what was told and what came.
+// `swage run` had resident; tests/verify/COSTS.md has a table of what was told and what came.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numbers are measured on one core of a shared Xeon, by what `swage run --no-render` took and
-// the steps, iterations and equilibria that run.json then told; tests/verify/LIMITS.md has a table
+// the steps, iterations and equilibria that run.json then told; tests/verify/COSTS.md has a table
 // of what was told and what came.
 #include "pipeline/time_cost.h"
 
