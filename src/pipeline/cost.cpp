@@ -432,8 +432,8 @@ void refuse_excess(const RunCost& cost, const RunOptions& options) {
     }
     if (cost.seconds.least > kLongestRun) {
         fail(ExitCode::resources,
-             "the run would take at least {:.0f} days: fewer frames or a larger [mold] spacing "
-             "take less (--force runs it anyway)",
+             "the run would take at least {:.0f} days: a larger [mold] spacing and fewer frames, in "
+             "motion a shorter duration, take less (--force runs it anyway)",
              cost.seconds.least / 86400);
     }
 }

@@ -213,7 +213,7 @@ TriMesh swept_by_blades(const StageEnd& end) {
     constexpr int kLooks = 256;
     std::vector<Drive> way;
     for (int n = 0; n <= kLooks; ++n) {
-        way.push_back(drive_at(end.machine, static_cast<double>(n) / kLooks, end.duration));
+        way.push_back(drive_at(end.machine, static_cast<double>(n) / kLooks, end.stage.duration));
     }
     TriMesh swept;
     for (const std::array<Vec3, 3>& corner : swept_triangles(end.machine.apparatus, way)) {
