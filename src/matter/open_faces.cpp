@@ -37,9 +37,10 @@ std::vector<std::uint16_t> open_connections(const Aggregate& matter) {
 }  // namespace
 
 std::vector<char> whole_cells(const Aggregate& matter) {
-    const std::vector<std::uint16_t> open = open_connections(matter);
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     std::vector<char> whole(matter.cell_fill.size(), 0);
+    if (runs.empty()) return whole;  // nor need there be connections
+    const std::vector<std::uint16_t> open = open_connections(matter);
     parallel_each(runs.size(), kRuns, [&](std::size_t r) {
         for (int n = 0; n < runs[r].count; ++n) {
             unsigned gone = 0;
