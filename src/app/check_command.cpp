@@ -204,7 +204,7 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     lines.add("steps", range_text(cost.steps, count_text));
     lines.add("memory", fmt::format("about {}, of which the matter takes {}",
                                     bytes_text(cost.memory_bytes), bytes_text(cost.mold.bytes)));
-    lines.add("disk", fmt::format("{} to {}, by how much is kept to go on from",
+    lines.add("disk", fmt::format("{} to {}, by what stills show and what is kept to go on from",
                                   bytes_text(cost.least_disk_bytes), bytes_text(cost.disk_bytes)));
     lines.add("time", range_text(cost.seconds, seconds_text) +
                           (cost.hangs_on.empty() ? "" : ", depending on " + cost.hangs_on));

@@ -426,15 +426,16 @@ void refuse_excess(const RunCost& cost, const RunOptions& options) {
     }
     if (cost.least_disk_bytes > disk) {
         fail(ExitCode::resources,
-             "the run would write about {}, and {} of disk is free: fewer frames or a smaller "
+             "the run would write at least {}, and {} of disk is free: fewer frames or a smaller "
              "[render] size need less (--force runs it anyway)",
              bytes_text(cost.least_disk_bytes), bytes_text(disk));
     }
     if (cost.seconds.least > kLongestRun) {
-        fail(ExitCode::resources,
-             "the run would take at least {:.0f} days: a larger [mold] spacing and fewer frames, in "
-             "motion a shorter duration, take less (--force runs it anyway)",
-             cost.seconds.least / 86400);
+        fail(
+            ExitCode::resources,
+            "the run would take at least {:.0f} days: a larger [mold] spacing and fewer frames, in "
+            "motion a shorter duration, take less (--force runs it anyway)",
+            cost.seconds.least / 86400);
     }
 }
 

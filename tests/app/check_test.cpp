@@ -84,6 +84,18 @@ TEST_CASE("the steps that a run takes lie in the range that check tells") {
     holds("bend\"\nsolver = \"implicit\"\nangle = \"5 deg\"\nduration = \"20 ms\"\n", rubber);
 }
 
+TEST_CASE("what a run leaves on the disk, stills too, lies in the range that check tells") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 9), out = scratch.path() / "run";
+    const Json cost = Json::parse(run_swage({"check", scene.string(), "--json"}).out).at("cost");
+    REQUIRE(run_swage({"run", scene.string(), "--out", out.string()}).code == 0);
+    double taken = 0;
+    for (const auto& [name, bytes] : files_below(out)) taken += static_cast<double>(bytes.size());
+    INFO(taken << cost);
+    CHECK(taken > cost.at("disk_bytes_least").get<double>());
+    CHECK(taken < cost.at("disk_bytes").get<double>());
+}
+
 TEST_CASE("a slab that its spacing does not divide is told in the layers that it lies in") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "slab.toml";
