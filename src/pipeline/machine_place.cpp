@@ -14,6 +14,7 @@
 #include "base/text_error.h"
 #include "geometry/mesh_check.h"
 #include "pipeline/limit_watch.h"
+#include "pipeline/rounded_text.h"
 #include "pipeline/stage_machine.h"
 #include "scene/way_text.h"
 
@@ -60,11 +61,6 @@ Vec3 whole_force(const Load& load) {
     Vec3 sum = Vec3::Zero();
     for (const Vec3& one : load.force) sum += one;
     return sum;
-}
-
-// A sum of many parts is not all digits of what was given.
-std::string rounded_text(double value, Quantity quantity) {
-    return quantity_text(std::stod(fmt::format("{:.4g}", value)), quantity);
 }
 
 }  // namespace
@@ -126,12 +122,12 @@ std::vector<std::string> push_texts(const Machine& machine) {
     for (const Load& load : machine.apparatus.load) {
         const Vec3 force = whole_force(load);
         if (load.force.empty()) {
-            texts.push_back(fmt::format("{} {} with {}", load.name,
-                                        load.pressure < 0 ? "sucks" : "presses",
-                                        rounded_text(std::abs(load.pressure), Quantity::stress)));
+            texts.push_back(
+                fmt::format("{} {} with {}", load.name, load.pressure < 0 ? "sucks" : "presses",
+                            rounded_text(std::abs(load.pressure), Quantity::stress, 4)));
         } else if (force.norm() > 0) {
             texts.push_back(fmt::format("{} pushes with {} along the world's {}", load.name,
-                                        rounded_text(force.norm(), Quantity::force),
+                                        rounded_text(force.norm(), Quantity::force, 4),
                                         way_text(force.normalized())));
         }
     }

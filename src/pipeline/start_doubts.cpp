@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "machines/machine.h"
+#include "pipeline/rounded_text.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/touching_points.h"
 
@@ -71,9 +72,7 @@ std::string flight_doubt(const StageSpec& stage, const BodySpec& body, const Mac
                        soonest, all, stage.duration);
 }
 
-std::string force_text(double force) {
-    return quantity_text(std::stod(fmt::format("{:.3g}", force)), Quantity::force);
-}
+std::string force_text(double force) { return rounded_text(force, Quantity::force, 3); }
 
 // Empty: its weight keeps it where it is, or something else may.
 std::string lift_doubt(const StageSpec& stage, const Machine& machine, const Aggregate& matter) {

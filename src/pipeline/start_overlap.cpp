@@ -12,6 +12,7 @@
 #include "geometry/near_pairs.h"
 #include "machines/touch.h"
 #include "matter/cell_middle.h"
+#include "pipeline/rounded_text.h"
 #include "pipeline/touching_points.h"
 #include "sim/rest_surface.h"
 
@@ -167,9 +168,7 @@ double shared_depth(Starting& a, Starting& b) {
 }
 
 // Rounded first, for surfaces are known as floats: a little less than 1 mm is no 1000 um.
-std::string depth_text(double depth) {
-    return quantity_text(std::stod(fmt::format("{:.3g}", depth)), Quantity::length);
-}
+std::string depth_text(double depth) { return rounded_text(depth, Quantity::length, 3); }
 
 // What is worst of its kind, and how many there are.
 struct Worst {
