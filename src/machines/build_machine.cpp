@@ -361,14 +361,6 @@ Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame) 
 
 namespace {
 
-std::vector<std::string> failed_checks(const MachineSpec& spec, const Variables& known) {
-    std::vector<std::string> told;
-    for (const CheckSpec& check : spec.check) {
-        if (evaluate(check.holds, known) == 0) told.push_back(check.otherwise);
-    }
-    return told;
-}
-
 // Of a machine that cannot be set up: what its checks find may be why. Those that see what has not
 // been placed are left out.
 [[noreturn]] void refuse_with_checks(const PlacedError& why, const MachineSpec& spec,
@@ -446,8 +438,8 @@ Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double
         machine.gravity_strength.emplace(spec.gravity_strength, setting.timed(), Quantity::number);
     }
     machine.notes = start_notes(machine, matter, setting.touch);
-    for (std::string& told : failed_checks(spec, setting.known)) {
-        machine.notes.push_back(std::move(told));
+    for (const CheckSpec& check : spec.check) {
+        if (evaluate(check.holds, setting.known) == 0) machine.notes.push_back(check.otherwise);
     }
     return machine;
 }
