@@ -58,10 +58,63 @@ void carry_back_stress(const Aggregate& from, const std::vector<CellId>& like, A
     }
 }
 
+// Which of a cell's two it is; -1: neither.
+int part_of(const MixedCell& mixed, std::size_t material) {
+    return mixed.material[0] == material ? 0 : mixed.material[1] == material ? 1 : -1;
+}
+
+bool holds(const Aggregate& body, CellId cell, std::size_t material) {
+    if (const MixedCell* mixed = body.mixed_at(cell)) return part_of(*mixed, material) >= 0;
+    return body.material_number(cell) == material;
+}
+
+float hardening_of(const Aggregate& body, CellId cell, std::size_t material) {
+    if (const MixedCell* mixed = body.mixed_at(cell)) {
+        return mixed->flowed[static_cast<std::size_t>(part_of(*mixed, material))].back();
+    }
+    return body.cell_history.hardening_of(cell);
+}
+
+// Of each material what it had itself, there or as near as it was.
+void carry_by_material(const Aggregate& from, Aggregate& to) {
+    struct Part {
+        std::size_t material;
+        float* hardening;
+    };
+    std::vector<Vec3> place;
+    std::vector<Part> part;
+    to.cell_history.assign(to.cell_fill.size());
+    const auto add = [&](CellId cell, const Eigen::Vector3f& centroid, std::size_t material,
+                         float& hardening) {
+        place.push_back(cell_middle(to, cell) + to.lattice.spacing * centroid.cast<double>());
+        part.push_back({material, &hardening});
+    };
+    for (std::size_t c = 0; c < to.cell_fill.size(); ++c) {
+        const auto cell = static_cast<CellId>(c);
+        if (to.mixed_at(cell) != nullptr) continue;
+        add(cell, to.cell_centroid[c], to.material_number(cell), to.cell_history.hardening()[c]);
+    }
+    for (MixedCell& mixed : to.mixed_cell) {
+        for (const int m : {0, 1}) {
+            add(mixed.cell, mixed.centroid[m], mixed.material[m], mixed.flowed[m].back());
+        }
+    }
+    const std::vector<CellId> like = suited_cells_there(
+        from, place,
+        [&](std::size_t n, CellId cell) { return holds(from, cell, part[n].material); });
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        if (like[n] >= 0) *part[n].hardening = hardening_of(from, like[n], part[n].material);
+    }
+}
+
 }  // namespace
 
 void carry_hardening(const Aggregate& from, Aggregate& to) {
-    if (from.cell_history.empty()) return;
+    if (!from.has_flowed()) return;
+    if (!from.inset.empty()) {
+        carry_by_material(from, to);
+        return;
+    }
     const std::size_t count = to.cell_fill.size();
     std::vector<Vec3> place;
     for (std::size_t c = 0; c < count; ++c) {

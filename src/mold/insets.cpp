@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "base/error.h"
+#include "base/parallel.h"
+#include "mold/overhang.h"
 #include "mold/prepare.h"
 
 namespace swage {
@@ -59,9 +62,12 @@ void add_part(int material, double fill, const Vec3& centroid, double whole, Cel
 // The cells that any inset reaches, one inset after the other.
 class InsetParts {
   public:
+    // `body`: whose insets may reach out; null: as they are.
     InsetParts(const std::vector<CellLayer>& layers, const MoldFrame& frame,
-               const Aggregate& matter)
-        : frame_(frame), matter_(matter), surface_(surface_cells(layers, matter.lattice)) {}
+               const Aggregate& matter, const TriMesh* body)
+        : frame_(frame), matter_(matter), surface_(surface_cells(layers, matter.lattice)) {
+        if (body != nullptr) body_.emplace(*body);
+    }
 
     // In cells: what of it is in the body, what would be were it more of its cells, and all of it.
     struct Volume {
@@ -69,7 +75,8 @@ class InsetParts {
     };
     Volume add(const Inset& inset, int material) {
         Volume volume{0, 0, signed_volume(inset.solid) / frame_.cell_volume()};
-        const std::vector<CellLayer> layers = share_cells(inset.solid, frame_);
+        std::vector<CellLayer> layers = share_cells(inset.solid, frame_);
+        if (body_) leave_out_overhang(inset.solid, layers);
         for (int k = 0; k < static_cast<int>(layers.size()); ++k) {
             const CellLayer& layer = layers[static_cast<std::size_t>(k)];
             volume.all += layer.deficit - layer.surplus;
@@ -81,6 +88,33 @@ class InsetParts {
     std::map<CellId, CellParts>& all() { return parts_; }
 
   private:
+    // Of cells that the body fills in part, and where the inset ends in them.
+    void leave_out_overhang(const TriMesh& solid, std::vector<CellLayer>& layers) const {
+        const Overhang overhang(*body_, solid, frame_);
+        struct Found {
+            CellFill* share;
+            int k;
+            double whole;
+        };
+        std::vector<Found> crossed;
+        for (int k = 0; k < static_cast<int>(layers.size()); ++k) {
+            CellLayer& layer = layers[static_cast<std::size_t>(k)];
+            std::set<CellId> ends;
+            for (const SurfacePatch& patch : layer.patch) {
+                ends.insert(matter_.lattice.cell_at(patch.i, patch.j, k));
+            }
+            for (CellFill& share : layer.share) {
+                const CellId cell = matter_.lattice.cell_at(share.i, share.j, k);
+                if (cell < 0 || !ends.contains(cell) || !surface_.contains(cell)) continue;
+                const double whole = matter_.cell_fill[cell];
+                if (whole < 1 - kPure) crossed.push_back({&share, k, whole});
+            }
+        }
+        parallel_each(crossed.size(), 16, [&](std::size_t n) {
+            const Found& at = crossed[n];
+            *at.share = overhang.within(*at.share, at.k, at.whole);
+        });
+    }
     void add(const CellFill& share, int k, int material, Volume& volume) {
         const CellId cell = matter_.lattice.cell_at(share.i, share.j, k);
         if (cell < 0) return;
@@ -108,6 +142,7 @@ class InsetParts {
     const MoldFrame& frame_;
     const Aggregate& matter_;
     std::set<CellId> surface_;
+    std::optional<TriangleTree> body_;
     std::map<CellId, CellParts> parts_;
 };
 
@@ -157,9 +192,10 @@ MixedCell mixed_cell(CellId cell, double whole, int most, int next, const CellPa
 }  // namespace
 
 void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>& layers,
-                  const MoldFrame& frame, Aggregate& matter, std::vector<std::string>& findings) {
+                  const MoldFrame& frame, Aggregate& matter, std::vector<std::string>& findings,
+                  const TriMesh* body) {
     if (insets.empty()) return;
-    InsetParts parts(layers, frame, matter);
+    InsetParts parts(layers, frame, matter, body);
     for (std::size_t n = 0; n < insets.size(); ++n) {
         refuse_unfit(insets[n], n);
         matter.inset.push_back(insets[n].material);
@@ -174,7 +210,7 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
             findings.push_back(
                 fmt::format("{:.3g} % of inset {} {} and is left out", 100 * share, n + 1, why));
         };
-        if (inside + slight < (1 - kOutside) * all) {
+        if (body == nullptr && inside + slight < (1 - kOutside) * all) {
             find(1 - (inside + slight) / all, "lies outside the work-piece");
         }
         if (slight > kSlight * all) find(slight / all, "is less than a thousandth of its cell");

@@ -13,7 +13,11 @@ namespace swage {
 // outside is left out, and told in `findings`. Throws InsetError when an inset is no solid, or
 // fills nothing. NOTE: a cell holds two materials at most; a third and less goes to the two with
 // most.
+// `body`: the surface that these layers are of, where insets may reach out of it: it is not told,
+// and of a cell that the body fills in part they have no more than lies in both. NOTE: else what
+// reaches out of such a cell counts as if it did not.
 void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>& layers,
-                  const MoldFrame& frame, Aggregate& matter, std::vector<std::string>& findings);
+                  const MoldFrame& frame, Aggregate& matter, std::vector<std::string>& findings,
+                  const TriMesh* body = nullptr);
 
 }  // namespace swage

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "geometry/box_mesh.h"
+#include "matter/material_volumes.h"
 #include "mold/caps.h"
 #include "mold/insets.h"
 #include "mold/moments.h"
@@ -162,8 +163,18 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
          thickness, spacing, thickness);
 }
 
+// Of an inset that others have taken all of, nothing is left to be weighed.
+void weigh_materials(const std::vector<double>& mass, Aggregate& matter) {
+    const std::vector<double> volume = material_volumes(matter);
+    for (std::size_t m = 0; m < volume.size(); ++m) {
+        if (!(volume[m] > 0) || !(mass[m] > 0)) continue;
+        (m == 0 ? matter.material : matter.inset[m - 1]).density = mass[m] / volume[m];
+    }
+}
+
 Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spacing,
-                       const std::vector<Inset>& insets, std::vector<std::string>& findings) {
+                       const std::vector<Inset>& insets, std::vector<std::string>& findings,
+                       const std::vector<double>* masses) {
     const double volume = signed_volume(mesh);
     const double area = surface_area(mesh);
     if (!(std::abs(volume) > 1e-9 * area * std::sqrt(area))) {
@@ -186,7 +197,8 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     fill_cells(layers, frame, matter);
     if (matter.cell_fill.empty()) refuse_thin(2 * volume / area, spacing);
     place_particles(matter);
-    place_insets(insets, layers, frame, matter, findings);
+    place_insets(insets, layers, frame, matter, findings, masses != nullptr ? &mesh : nullptr);
+    if (masses != nullptr) weigh_materials(*masses, matter);
     share_out(layers, frame, matter);
     match_moments(matter);
     matter.surface = carry_patches(layers, matter.lattice, matter.cell_fill);
@@ -197,22 +209,26 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
 }  // namespace
 
 Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings,
-               const std::vector<Inset>& insets, std::vector<std::string>* told) {
+               const std::vector<Inset>& insets, std::vector<std::string>* told,
+               const std::vector<double>* masses) {
     std::vector<std::string> unread;
     std::vector<std::string>& findings = told != nullptr ? *told : unread;
     const double spacing = spacing_for(mesh, settings);
     refuse_too_many_cells(mesh, settings);
     if (settings.kind == MoldKind::block) {
-        return mold_surface(block_around(mesh, spacing), material, spacing, insets, findings);
+        return mold_surface(block_around(mesh, spacing), material, spacing, insets, findings,
+                            masses);
     }
     const HoleCaps caps = caps_over_holes(mesh);
-    if (caps.apex.empty()) return mold_surface(mesh, material, spacing, insets, findings);
+    if (caps.apex.empty()) {
+        return mold_surface(mesh, material, spacing, insets, findings, masses);
+    }
     const TriMesh closed = with_caps(mesh, caps);
     findings.push_back(fmt::format(
         "the surface is open: {} closed by flat cones of {:.3g} % of its area",
         caps.apex.size() == 1 ? "one hole was" : fmt::format("{} holes were", caps.apex.size()),
         100 * (surface_area(closed) / surface_area(mesh) - 1)));
-    return mold_surface(closed, material, spacing, insets, findings);
+    return mold_surface(closed, material, spacing, insets, findings, masses);
 }
 
 }  // namespace swage

@@ -54,8 +54,10 @@ class InsetError : public Error {
 
 // Volume and mass equal the mesh's to 1e-6 at any spacing. Throws Error(mesh) when the mesh
 // encloses nothing, InsetError, Error(resources) above the limit. `told`: what is not as the mesh
-// has it is added.
+// has it is added. `masses`: of each material [kg], of matter that is molded anew: densities give
+// way to them, and insets may reach out of the body (mold/insets.h).
 Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings,
-               const std::vector<Inset>& insets = {}, std::vector<std::string>* told = nullptr);
+               const std::vector<Inset>& insets = {}, std::vector<std::string>* told = nullptr,
+               const std::vector<double>* masses = nullptr);
 
 }  // namespace swage

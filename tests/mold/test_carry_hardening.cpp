@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mold/carry_hardening.h"
 
+#include "geometry/box_mesh.h"
+#include "mold/mold.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
@@ -83,4 +85,77 @@ TEST_CASE("what is molded anew has the back stress that the matter had, turned a
     for (float& one : old.cell_history.hardening()) one = 0.1f;
     carry_hardening(old, anew);
     CHECK(3 * shear * anew.cell_back.row[1][0] == Approx(400).epsilon(2e-3));
+}
+
+namespace {
+
+// A bar along x, of another material up to that share of its length.
+Aggregate bar_of_two(const Vec3& size, double share, int across) {
+    Material soft, hard;
+    soft.yield_stress = 1e3, hard.yield_stress = 1e6;
+    MoldSettings settings;
+    settings.across = across;
+    Vec3 to = 0.5 * size;
+    to.x() = (share - 0.5) * size.x();
+    return mold(box_mesh(-0.5 * size, 0.5 * size), soft, settings,
+                {{box_mesh(-0.5 * size, to), hard}});
+}
+
+// Calls see(material, place, hardening) with each material of each cell, as molded.
+template <typename See>
+void for_each_part(Aggregate& m, const See& see) {
+    const auto place = [&](CellId cell, const Eigen::Vector3f& centroid) -> Vec3 {
+        const Vec3 low = m.particle_reference.at(m.lattice.cell_corners(cell)[0]);
+        return low + m.lattice.spacing * (Vec3::Constant(0.5) + centroid.cast<double>());
+    };
+    for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+        const auto cell = static_cast<CellId>(c);
+        if (m.mixed_at(cell) != nullptr) continue;
+        see(int(m.cell_material[c]), place(cell, m.cell_centroid[c]),
+            m.cell_history.hardening()[c]);
+    }
+    for (MixedCell& mixed : m.mixed_cell) {
+        for (int k : {0, 1}) {
+            see(int(mixed.material[k]), place(mixed.cell, mixed.centroid[k]),
+                mixed.flowed[k].back());
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("the hardening of what is molded anew stays with the material that has it") {
+    // The boundary runs through cells of both, at other places of these.
+    Aggregate old = bar_of_two({0.4, 0.1, 0.1}, 0.43, 5);
+    REQUIRE(!old.mixed_cell.empty());
+    old.cell_history.assign(old.cell_fill.size());
+    for_each_part(old, [](int material, const Vec3& at, float& hardening) {
+        hardening = static_cast<float>(material == 0 ? 1 + at.x() : 10 + at.x());
+    });
+    deform(old, [](const Vec3& x) { return Vec3(1.25 * x.x(), 0.9 * x.y(), 0.9 * x.z()); });
+    Aggregate anew = bar_of_two({0.5, 0.09, 0.09}, 0.43, 4);
+    REQUIRE(!anew.mixed_cell.empty());
+    carry_hardening(old, anew);
+    int seen[2] = {0, 0};
+    for_each_part(anew, [&](int material, const Vec3& at, float& hardening) {
+        CHECK(std::abs(hardening - (material == 0 ? 1 : 10) - at.x() / 1.25) < 0.021);
+        ++seen[material];
+    });
+    CHECK(seen[0] > 100);
+    CHECK(seen[1] > 100);
+}
+
+TEST_CASE("what flowed in cells of two materials alone is as hard once it is molded anew") {
+    Aggregate old = bar_of_two({0.4, 0.1, 0.1}, 0.43, 5);
+    for (MixedCell& mixed : old.mixed_cell) {
+        for (int k : {0, 1}) mixed.flowed[k].back() = mixed.material[k] == 0 ? 0.5f : 0;
+    }
+    REQUIRE(old.cell_history.empty());
+    Aggregate anew = bar_of_two({0.4, 0.1, 0.1}, 0.43, 5);
+    carry_hardening(old, anew);
+    REQUIRE(!anew.mixed_cell.empty());
+    for_each_part(anew, [&](int material, const Vec3& at, float& hardening) {
+        const bool there = material == 0 && at.x() < -0.02;  // where that cell ends
+        CHECK(hardening == (there ? 0.5f : 0));
+    });
 }
