@@ -38,9 +38,11 @@ int open_edges(const TriMesh& mesh) {
 
 class Breaker {
   public:
-    Breaker(const TriMesh& whole, const Mount& mount, const Aggregate& matter, double roughness)
+    Breaker(const TriMesh& whole, const Mount& mount, const Aggregate& matter, double roughness,
+            bool bounds_matter)
         : whole_(whole),
           matter_(matter),
+          bounds_matter_(bounds_matter),
           warp_(matter.lattice, roughness),
           parts_(warp_.is_none() ? 1 : kParts),
           faces_(faces_to_part(matter, mount)),
@@ -195,7 +197,7 @@ class Breaker {
     // `site`: of the cell in whose middle the place is, in straight space.
     bool is_inside(const Vec3& straight, const Vec3i& site) {
         const CellId cell = matter_.lattice.cell_at(site);
-        if (cell >= 0 && matter_.cell_fill[cell] > 0.9999f) return true;
+        if (bounds_matter_ && cell >= 0 && matter_.cell_fill[cell] > 0.9999f) return true;
         return tree().winding_number(straight) > 0.5;
     }
 
@@ -419,6 +421,7 @@ class Breaker {
 
     const TriMesh& whole_;
     const Aggregate& matter_;
+    const bool bounds_matter_;
     const Warp warp_;
     const int parts_;  // of a square's side
     const std::vector<Face> faces_;
@@ -437,8 +440,8 @@ class Breaker {
 bool is_broken(const Aggregate& matter) { return !broken_faces(matter).empty(); }
 
 BrokenSkin break_skin(const TriMesh& whole, const Mount& mount, const Aggregate& matter,
-                      double roughness) {
-    return Breaker(whole, mount, matter, roughness).run();
+                      double roughness, bool bounds_matter) {
+    return Breaker(whole, mount, matter, roughness, bounds_matter).run();
 }
 
 }  // namespace swage

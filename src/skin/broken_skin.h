@@ -21,8 +21,8 @@ bool is_broken(const Aggregate& matter);
 // `whole`: the skin while it was, its positions those at molding, and its mount. A crack that ends
 // inside the body is a slit there, its two faces joined at its end. Old vertices keep their
 // numbers. `roughness`: as SkinSettings has it; where new vertices lie hangs on nothing else that
-// broke.
+// broke. `bounds_matter`: else it is some other surface within the body.
 BrokenSkin break_skin(const TriMesh& whole, const Mount& mount, const Aggregate& matter,
-                      double roughness = 0);
+                      double roughness = 0, bool bounds_matter = true);
 
 }  // namespace swage
