@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "geometry/mesh_read.h"
+#include "pipeline/carried_insets.h"
 #include "pipeline/mesh_bytes.h"
 
 namespace swage {
@@ -98,6 +99,7 @@ std::string said_of_stages(const SceneSpec& scene, std::size_t stages) {
     if (scene.output.meshes_per_frame) {  // whose names count from it
         all += fmt::format("meshes from {}\n", scene.render.first_frame);
     }
+    if (carries_insets(scene, stages)) all += "with the surfaces of insets\n";
     for (const SkinField field : scene.output.fields) all += words_of(field).name + "\n"s;
     return all;
 }

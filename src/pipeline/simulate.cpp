@@ -36,7 +36,8 @@ Reached molded(const SimulationContext& context, StartWarnings at_start) {
     std::vector<std::vector<std::string>> found, made, divided;
     for (std::size_t b = 0; b < input.size(); ++b) {
         const auto lap = context.watch.lap("mold");
-        bodies.push_back(make_work_piece(input[b], context.scene.body[b], context.scene.skin));
+        bodies.push_back(make_work_piece(input[b], context.scene.body[b], context.scene.skin,
+                                         carries_insets(context.scene, 0)));
         const Aggregate& matter = bodies[b].matter;
         found.push_back(bodies[b].finding);
         made.push_back(

@@ -389,6 +389,16 @@ class StageRun {
     StageOutcome outcome_;
 };
 
+WorkPiece mold_stage_anew(const StageSpec& stage, std::size_t body, const WorkPiece& piece,
+                          const SceneSpec& scene) {
+    const auto number = static_cast<std::size_t>(&stage - scene.stage.data());
+    try {
+        return mold_anew(piece, scene.body[body], scene.skin, carries_insets(scene, number + 1));
+    } catch (const Error& error) {
+        fail(error.code(), "{}: {}", stage.name, error.what());
+    }
+}
+
 }  // namespace
 
 StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkPiece>& bodies,
@@ -399,7 +409,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         std::vector<WorkPiece> anew;  // where one cannot be, all stay as they were
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             throw_if_interrupted();
-            anew.push_back(mold_anew(bodies[b], context.scene.body[b], context.scene.skin));
+            anew.push_back(mold_stage_anew(stage, b, bodies[b], context.scene));
             for (const std::string& warning :
                  warnings_of_mold(anew[b].name, bodies.size() > 1, anew[b].finding)) {
                 told.push_back(fmt::format("{}: {}", stage.name, warning));

@@ -12,6 +12,7 @@
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_read.h"
 #include "geometry/mesh_repair.h"
+#include "matter/material_volumes.h"
 #include "mold/carry_hardening.h"
 #include "mold/carry_motion.h"
 #include "mold/mold.h"
@@ -211,8 +212,10 @@ std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
     return input;
 }
 
-Aggregate mold_body(const InputMesh& input, const BodySpec& body,
-                    std::vector<std::string>& findings) {
+namespace {
+
+std::vector<Inset> read_insets(const InputMesh& input, const BodySpec& body,
+                               std::vector<std::string>& findings) {
     std::vector<Inset> insets;
     const Box box = box_of(input.to_mold().position);
     for (const InsetSpec& spec : body.inset) {
@@ -222,11 +225,23 @@ Aggregate mold_body(const InputMesh& input, const BodySpec& body,
             refuse_inset(spec, error);
         }
     }
+    return insets;
+}
+
+Aggregate mold_with(const InputMesh& input, const BodySpec& body, const std::vector<Inset>& insets,
+                    std::vector<std::string>& findings) {
     try {
         return mold(input.to_mold(), body.material, body.mold, insets, &findings);
     } catch (const InsetError& error) {
         refuse_inset(body.inset[error.inset()], error);
     }
+}
+
+}  // namespace
+
+Aggregate mold_body(const InputMesh& input, const BodySpec& body,
+                    std::vector<std::string>& findings) {
+    return mold_with(input, body, read_insets(input, body, findings), findings);
 }
 
 namespace {
@@ -269,12 +284,14 @@ void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matt
     }
 }
 
-WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin) {
-    WorkPiece piece;
+namespace {
+
+// Its matter and what it found are there.
+void dress(const InputMesh& input, const BodySpec& body, const SkinSettings& skin,
+           WorkPiece& piece) {
     piece.name = body.name;
     piece.label = body.label();
     piece.roughness = skin.roughness;
-    piece.matter = mold_body(input, body, piece.finding);
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         paint(like, body_look(body, input.mesh));
@@ -294,6 +311,17 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     piece.probe = mount_probes(body, input.to_mold(), piece.matter);
     piece.position = piece.skin.position;
     piece.followed = piece.matter.particle_position;
+}
+
+}  // namespace
+
+WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin,
+                          bool carries) {
+    WorkPiece piece;
+    const std::vector<Inset> insets = read_insets(input, body, piece.finding);
+    piece.matter = mold_with(input, body, insets, piece.finding);
+    dress(input, body, skin, piece);
+    if (carries) piece.inset = carry_insets(insets, &input.to_mold(), piece.matter);
     const StartSpec& start = body.start;
     const bool stands = !start.at && start.turn == Vec3::Zero();
     if (!stands || start.moves()) place_at_start(start, input.to_mold(), piece.matter);
@@ -308,14 +336,14 @@ std::string division_text(const WorkPiece& piece, const InputMesh& input) {
                        before, after, kLongestSkinEdge);
 }
 
-WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin) {
+WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin,
+                    bool carries) {
     InputMesh input;
     input.mesh = piece.deformed();
     input.report = check_mesh(input.mesh);
     // Pieces that touch where they were cut are no bodies to be united.
     if (!input.report.bounds_a_volume()) make_solid(input, body.mold.kind, skin.crease_angle);
     BodySpec as_it_stands = body;
-    as_it_stands.start = {};
     as_it_stands.probe.clear();
     // It is painted already, but where it was cut; what is made for a block's box is not.
     const bool is_blank = skin.kind == SkinKind::boundary && body.mold.kind == MoldKind::block;
@@ -324,7 +352,16 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     as_it_stands.mold.across.reset();
     as_it_stands.mold.spacing = in_whole_layers(piece.matter.lattice.spacing,
                                                 surface_box(input.to_mold()).size().minCoeff());
-    WorkPiece anew = make_work_piece(input, as_it_stands, skin);
+    WorkPiece anew;
+    if (piece.inset.size() != piece.matter.inset.size()) {
+        fail(ExitCode::stopped, "cannot mold anew: the insets' surfaces were not carried");
+    }
+    const std::vector<Inset> insets = insets_now(piece.inset, piece.matter);
+    const std::vector<double> masses = material_masses(piece.matter);
+    anew.matter = mold(input.to_mold(), body.material, as_it_stands.mold, insets, &anew.finding,
+                       insets.empty() ? nullptr : &masses);
+    dress(input, as_it_stands, skin, anew);
+    if (carries) anew.inset = carry_insets(insets, nullptr, anew.matter);
     const std::string divided = division_text(anew, input);
     if (!divided.empty()) log_info("{}", divided);
     // Pressed, drawn or where its pieces lie in each other, matter takes up another volume.
@@ -355,6 +392,7 @@ bool keeps_volume(const WorkPiece& piece) {
 void hold_skin(WorkPiece& piece) {
     piece.is_parted = true;
     std::swap(piece.matter.particle_position, piece.followed);
+    hold_insets(piece.inset, piece.matter);
     if (piece.whole_skin) {
         hold_places(piece.whole_mount, piece.matter, piece.whole_position);
     } else {
@@ -364,6 +402,7 @@ void hold_skin(WorkPiece& piece) {
 }
 
 CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep) {
+    cut_insets(piece.inset, piece.matter, sweep);
     if (is_made_anew(piece)) return {};
     CutResult shown = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep);
     piece.is_torn = piece.is_torn || shown.has_curved;
@@ -388,6 +427,7 @@ void follow_matter(WorkPiece& piece) {
                        piece.position);
     }
     piece.followed = piece.matter.particle_position;
+    follow_insets(piece.inset, piece.matter);
     if (piece.whole_skin) skin_positions(piece.whole_mount, piece.matter, piece.whole_position);
 }
 

@@ -14,6 +14,7 @@
 #include "geometry/trimesh.h"
 #include "matter/aggregate.h"
 #include "mold/mold.h"
+#include "pipeline/carried_insets.h"
 #include "scene/spec.h"
 #include "skin/cut_mesh.h"
 #include "skin/mount.h"
@@ -70,14 +71,16 @@ struct WorkPiece {
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;
     std::vector<Vec3> whole_position;
+    std::vector<CarriedInset> inset;  // where a later stage molds it anew
 
     // The skin as a mesh where it is now.
     TriMesh deformed() const;
 };
 
 // At its start: molded as its mesh stands in its file, then turned, moved and set in motion, so
-// that how it stands has no effect on how well it is resolved.
-WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin);
+// that how it stands has no effect on how well it is resolved. `carries`: its insets' surfaces.
+WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin,
+                          bool carries = false);
 
 // Empty where its skin is as its mesh came.
 std::string division_text(const WorkPiece& piece, const InputMesh& input);
@@ -88,8 +91,10 @@ void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matt
 Box box_at_start(const StartSpec& start, const TriMesh& mesh, const TriMesh& shown);
 
 // A new representation of the work-piece as it is now, without strain, of cells of the same size,
-// as hard as it has become and as fast as it goes.
-WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin);
+// as hard as it has become and as fast as it goes; each of its materials is as heavy as it was. Of
+// one with insets that are carried; `carries` them on.
+WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin,
+                    bool carries = false);
 
 // Of one body its own; of several, of all.
 std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);

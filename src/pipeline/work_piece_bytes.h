@@ -97,19 +97,26 @@ void visit(Io& io, Mount& mount) {
 }
 
 template <typename Io>
+void visit(Io& io, CarriedInset& inset) {
+    auto& [mesh, mount, position, is_torn] = inset;
+    io(mesh, mount, position, is_torn);
+}
+
+template <typename Io>
 void visit(Io& io, WorkPiece& piece) {
     auto& [name, label, matter, skin, mount, look, position, followed, finding, probe, is_torn,
-           is_parted, roughness, whole_skin, whole_mount, whole_position] = piece;
+           is_parted, roughness, whole_skin, whole_mount, whole_position, insets] = piece;
     io(name, label, matter, skin, mount, probe);
     std::optional<TriMesh> like;
     if (look) like = look->mesh();
     io(like, position, followed, finding, is_torn, is_parted, roughness, whole_skin, whole_mount,
-       whole_position);
+       whole_position, insets);
     if constexpr (Io::kReads) {
         if (like) look = std::make_shared<const NewLook>(*like);
         finish_mount(mount, matter);
         finish_mount(probe, matter);
         if (whole_skin) finish_mount(whole_mount, matter);
+        for (CarriedInset& one : insets) finish_mount(one.mount, matter);
     }
 }
 

@@ -129,7 +129,7 @@ constexpr KeyHelp kSceneKeys[] = {
     {"[[stage]]", "frames",
      "frames recorded, one still each; there are at least as many equilibria"},
     {"[[stage]]", "duration", "duration of the machine's motion", {}, "frames / fps"},
-    {"[[stage]]", "remold", "mold the deformed mesh anew before this stage"},
+    {"[[stage]]", "remold", "mold the deformed mesh anew, with its insets, before this stage"},
     {"[[stage]]", "axis",
      "world axis of the machine's length; auto: the longest side of the box, or the longest "
      "one across up for upright machines"},

@@ -75,13 +75,6 @@ void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
                      "cells of two materials have no back stress: remove back_stress from all "
                      "materials of the work-piece");
     }
-    for (const StageSpec& stage : scene.stage) {
-        if (stage.remold) {
-            root.mistake("inset", fmt::format("stage \"{}\" molds the work-piece anew, which would "
-                                              "lose the inset: leave out remold",
-                                              stage.name));
-        }
-    }
 }
 
 }  // namespace swage

@@ -51,6 +51,10 @@ TEST_CASE(
         {"springs", kMesh + metal("mechanics = \"springs\"\n") + worked()},
         {"boundary", kMesh + metal("") + kBoundary + worked()},
         {"molded anew", kMesh + metal("") + kBoundary + worked("remold = true\n")},
+        {"two materials, is cut and molded anew",
+         kMesh + metal("") +
+             "[[inset]]\nname = \"tin\"\nfrom = [0.2, 0.3, 0.3]\nto = [1, 0.8, 0.7]\n" + worked() +
+             "remold = true\n"},
         {"stops at a limit",
          kMesh + metal("") +
              "[[stage]]\nmachine = \"press\"\ndepth = 0.2\nframes = 2\n[[stage.limit]]\n"

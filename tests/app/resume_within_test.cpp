@@ -168,6 +168,15 @@ TEST_CASE("a run goes on within whichever stage it was at") {
                   {6, 14, 15, 19});
 }
 
+TEST_CASE("a body of two materials that is cut and molded anew goes on within any stage") {
+    check_goes_on(kMesh + metal("") +
+                      "[[inset]]\nname = \"tin\"\nfrom = [0.2, 0.3, 0.3]\nto = [1, 0.8, 0.7]\n" +
+                      kOutput + stage("cut", "tilt = \"20 deg\"\nframes = 5") +
+                      stage("stretch", "strain = 0.05\nframes = 5\nremold = true") +
+                      stage("twist", "angle = \"9 deg\"\nframes = 3\nremold = true"),
+                  {3, 8, 13});
+}
+
 TEST_CASE("a run that ends again before any more of it is kept loses nothing that was") {
     const std::string text = kMesh + metal("") + kOutput;
     check_goes_on(text + kBends, {5, 5, 9});

@@ -38,7 +38,8 @@ WorkPiece piece_that_went_through_all(SkinKind skin) {
     inset.material.name = "core";
     inset.material.flow_along({{0, 1e5}, {0.1, 2e5}});
     body.inset.push_back(inset);
-    WorkPiece piece = make_work_piece(input, body, {skin});
+    WorkPiece piece = make_work_piece(input, body, {skin}, true);
+    piece.inset.at(0).is_torn = true;
     Aggregate& m = piece.matter;
     REQUIRE(m.mixed_cell.size() > 2);
     const std::size_t particles = m.particle_count(), cells = m.cell_fill.size();
@@ -144,6 +145,13 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
         CHECK(after.whole_position == before.whole_position);
         CHECK(after.whole_mount.reference == before.whole_mount.reference);
         CHECK(after.whole_mount.vertex == before.whole_mount.vertex);
+        REQUIRE(after.inset.size() == 1);
+        CHECK(after.inset[0].is_torn);
+        CHECK(after.inset[0].mesh.position == before.inset[0].mesh.position);
+        CHECK(after.inset[0].mesh.triangle == before.inset[0].mesh.triangle);
+        CHECK(after.inset[0].position == before.inset[0].position);
+        CHECK(after.inset[0].mount.reference == before.inset[0].mount.reference);
+        CHECK(after.inset[0].mount.vertex == before.inset[0].mount.vertex);
         CHECK(after.mount.kind == before.mount.kind);
         CHECK(after.mount.hold == before.mount.hold);
         CHECK(after.mount.side == before.mount.side);

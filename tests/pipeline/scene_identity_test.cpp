@@ -1,10 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/scene_identity.h"
 
+#include "pipeline/checkpoint.h"
+
 #include "tests/catch.h"
 #include "tests/shared/scratch.h"
 
 using namespace swage;
+
+TEST_CASE("what stages were run without the surfaces of insets is not gone on from with them") {
+    SceneSpec scene;
+    scene.body.emplace_back().inset.emplace_back();
+    scene.stage.resize(3);
+    const StageKeys before = identity_of(scene, {}, {}).stage_key;
+    scene.stage[1].remold = true;
+    const StageKeys after = identity_of(scene, {}, {}).stage_key;
+    CHECK(after.at(1) != before.at(1));
+    CHECK(after.at(2) == before.at(2));  // which what the stage itself says tells
+    scene.body[0].inset.clear();
+    CHECK(identity_of(scene, {}, {}).stage_key == before);
+}
 
 TEST_CASE("what lies beside a glTF file that a scene reads belongs to what a run was made of") {
     const Scratch scratch;

@@ -41,6 +41,10 @@ TEST_CASE("mistakes in insets are found, and what insets do not go with is refus
          undamped,
          {"without damping: give each [[inset]] a damping_ratio, or use solver"}},
     });
+    Parts remolded = inset("name = \"lead\"\n" + box);
+    remolded.stage =
+        "[[stage]]\nmachine = \"bend\"\n[[stage]]\nmachine = \"twist\"\nremold = true\n";
+    CHECK(mistakes_in(remolded.text()) == "");
 }
 
 TEST_CASE("mistakes in probes are found") {
