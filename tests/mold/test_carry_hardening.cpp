@@ -133,12 +133,14 @@ TEST_CASE("the hardening of what is molded anew stays with the material that has
         hardening = static_cast<float>(material == 0 ? 1 + at.x() : 10 + at.x());
     });
     deform(old, [](const Vec3& x) { return Vec3(1.25 * x.x(), 0.9 * x.y(), 0.9 * x.z()); });
-    Aggregate anew = bar_of_two({0.5, 0.09, 0.09}, 0.43, 4);
+    // Where the other was, too, as surfaces that bend by their triangles have it.
+    const double share = GENERATE(0.36, 0.43, 0.52);
+    Aggregate anew = bar_of_two({0.5, 0.09, 0.09}, share, 4);
     REQUIRE(!anew.mixed_cell.empty());
     carry_hardening(old, anew);
     int seen[2] = {0, 0};
     for_each_part(anew, [&](int material, const Vec3& at, float& hardening) {
-        CHECK(std::abs(hardening - (material == 0 ? 1 : 10) - at.x() / 1.25) < 0.021);
+        CHECK(std::abs(hardening - (material == 0 ? 1 : 10) - at.x() / 1.25) < 0.06);
         ++seen[material];
     });
     CHECK(seen[0] > 100);
