@@ -19,6 +19,9 @@ class Overhang {
     CellFill within(const CellFill& share, int k, double whole) const;
 
   private:
+    // Whether the inset seems to have all that the body has of the cell.
+    bool covers(const CellFill& share, int k) const;
+
     const TriangleTree& body_;
     TriangleTree inset_;
     const MoldFrame& frame_;
