@@ -201,12 +201,12 @@ class Reader {
         at_ += number.size;
         std::size_t next = at_;
         while (next < text_.size() && is_blank(text_[next])) ++next;
-        double factor = 1;
+        double value = number.value;
         const bool has_word = next < text_.size() && begins_word(text_[next]);
         const std::string_view word = has_word ? word_at(next) : std::string_view();
         const auto unit = leading_unit(text_.substr(next));
         if (unit && !is_variable(word)) {
-            factor = unit->factor;
+            value = in_si(text_.substr(from, number.size), *unit);
             at_ = next + unit->size;
             refuse_power_of_unit(text_.substr(from, number.size), text_.substr(next, unit->size));
         } else if (is_variable(word) || function_named(word) != nullptr || word == "pi") {
@@ -216,7 +216,7 @@ class Reader {
         } else if (has_word) {
             refuse(next, fmt::format("unknown unit \"{}\"", word));
         }
-        write(fmt::format("({:.17g})", number.value * factor), from);
+        write(fmt::format("({:.17g})", value), from);
     }
 
     // Of "3 cm^2" some would expect 9 and some 3 square centimetres.

@@ -304,6 +304,23 @@ std::optional<LeadingUnit> leading_unit(std::string_view text) {
     return best;
 }
 
+double in_si(std::string_view number, const LeadingUnit& unit) {
+    constexpr double kTenTo[] = {1e-9, 1e-6, 1e-3, 1e-2, 1e-1, 1e3, 1e5, 1e6, 1e9};
+    constexpr int kPower[] = {-9, -6, -3, -2, -1, 3, 5, 6, 9};
+    const double value = leading_number(number)->value;
+    const auto* const ten = std::find(std::begin(kTenTo), std::end(kTenTo), unit.factor);
+    const double product = value * unit.factor;
+    if (ten == std::end(kTenTo) || value == 0 || !std::isfinite(product)) return product;
+    // By the point, not by a product, which is rounded once more.
+    const std::size_t e = std::min(number.find_first_of("eE"), number.size());
+    std::string_view exponent = number.substr(std::min(e + 1, number.size()));
+    if (exponent.starts_with('+')) exponent.remove_prefix(1);
+    int power = 0;
+    std::from_chars(exponent.data(), exponent.data() + exponent.size(), power);
+    power += kPower[ten - std::begin(kTenTo)];
+    return leading_number(fmt::format("{}e{}", number.substr(0, e), power))->value;
+}
+
 double parse_quantity(std::string_view text, Quantity wanted) {
     std::size_t begin = 0, end = text.size();
     while (begin < end && is_blank(text[begin])) ++begin;
@@ -335,7 +352,7 @@ double parse_quantity(std::string_view text, Quantity wanted) {
         refuse(begin + at, fmt::format("\"{}\" is {}; {}", inner,
                                        about(unit->quantity).with_article, wanted_text(wanted)));
     }
-    const double value = number->value * unit->factor;
+    const double value = in_si(inner.substr(0, number->size), *unit);
     if (!std::isfinite(value)) refuse(begin, fmt::format("\"{}\" is too large", inner));
     return value;
 }

@@ -63,6 +63,9 @@ struct LeadingUnit {
 };
 std::optional<LeadingUnit> leading_unit(std::string_view text);
 
+// The SI value of a number as it is written, in this unit: 2.2 cm and 22 mm are the same double.
+double in_si(std::string_view number, const LeadingUnit& unit);
+
 // For people: 0.18 m is "18 cm", 2.1e11 Pa "210 GPa", angles are in degrees. Six digits.
 std::string quantity_text(double value, Quantity quantity);
 

@@ -220,3 +220,22 @@ TEST_CASE("what no scene can mean is told with the range, and what the extremes 
     }
     CHECK(why_not_meant(1e13, Quantity::stress, true).empty());
 }
+
+TEST_CASE("one quantity is one number, in whatever decimal unit it is written") {
+    for (int n = 1; n < 10000; n += 7) {
+        const double m = parse_quantity(fmt::format("{}e-4 m", n), Quantity::length);
+        CAPTURE(n);
+        CHECK(m == std::stod(fmt::format("{}e-4", n)));
+        CHECK(parse_quantity(fmt::format("{}.{:02d} cm", n / 100, n % 100), Quantity::length) == m);
+        CHECK(parse_quantity(fmt::format("{}.{} mm", n / 10, n % 10), Quantity::length) == m);
+        CHECK(parse_quantity(fmt::format("-{}E+2 um", n), Quantity::length) == -m);
+        CHECK(parse_quantity(fmt::format("{}e-7 km", n), Quantity::length) == m);
+        CHECK(parse_quantity(fmt::format("{}.{:02d} GPa", n / 100, n % 100), Quantity::stress) ==
+              parse_quantity(fmt::format("{}0 MPa", n), Quantity::stress));
+    }
+    CHECK(parse_quantity("0 mm", Quantity::length) == 0);
+    CHECK(parse_quantity("5. mm", Quantity::length) == 0.005);
+    CHECK(parse_quantity(".5 mm", Quantity::length) == 0.0005);
+    CHECK(mistake_of("1e308 km", Quantity::length) == "0: \"1e308 km\" is too large");
+    CHECK(parse_quantity("1e-320 mm", Quantity::length) == 0);
+}
