@@ -83,10 +83,12 @@ std::string run_text(const std::string& folder, const Json& record) {
     Lines lines(folder);
     lines.add("state", text_at(record, "state"));
     for (const Json& stage : record.value("stages", Json::array())) {
-        lines.add(
-            text_at(stage, "name"),
-            fmt::format("{}, frames {} to {}", text_at(stage, "machine"),
-                        stage.at("frames").at(0).get<int>(), stage.at("frames").at(1).get<int>()));
+        const int first = stage.at("frames").at(0).get<int>(),
+                  last = stage.at("frames").at(1).get<int>();
+        lines.add(text_at(stage, "name"),
+                  fmt::format("{}, {}", text_at(stage, "machine"),
+                              last < first ? "no frame is finished"
+                                           : fmt::format("frames {} to {}", first, last)));
         for (const std::string& use : use_texts(stage)) lines.add(use);
     }
     for (const Json& warning : record.value("warnings", Json::array())) {

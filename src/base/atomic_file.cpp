@@ -42,6 +42,8 @@ bool is_temporary(const std::string& name, long pid) {
 
 }  // namespace
 
+bool is_left_over(const std::string& name) { return is_temporary(name, 0); }
+
 fs::path temporary_for(const fs::path& file) {
     // The extension stays last: programs such as ffmpeg choose the format by it.
     return file.parent_path() /

@@ -33,6 +33,9 @@ class WholeFile {
 std::filesystem::path temporary_for(const std::filesystem::path& file);
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& file);
 
+// A temporary's, of this process or one that is no more.
+bool is_left_over(const std::string& name);
+
 // Removes temporaries that the process `pid` has left in a directory tree; 0: this one, and any
 // that is no more.
 void remove_temporaries(const std::filesystem::path& directory, long pid);

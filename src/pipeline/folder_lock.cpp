@@ -13,6 +13,7 @@
 #include <sstream>
 #include <string>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 
@@ -77,7 +78,8 @@ bool FolderLock::is_all_of(const fs::path& folder) {
     std::error_code error;
     bool all = true;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-        all = all && is_lock(it->path());
+        const fs::path& file = it->path();
+        all = all && (is_lock(file) || is_left_over(file.filename().string()));
     }
     if (error) fail(ExitCode::output, "{}: cannot be read: {}", folder.string(), error.message());
     return all;

@@ -78,7 +78,7 @@ class SceneRun {
         is_simulated_ = take_up_earlier();
         if (is_simulated_) {
             forget_what_is_within(directory_);
-            if (plots_.has_undrawn()) draw_plots();
+            if (plots_.has_undrawn() || !record_.contains("plots")) draw_plots();
             if (!options_.draw || is_drawn(record_, files_, wanted_, scene_.render)) {
                 return tell_that_it_is_done();
             }
@@ -123,12 +123,18 @@ class SceneRun {
         return true;
     }
 
+    // The one before may have ended before it could say so.
     Json tell_that_it_is_done() {
         const bool is_complete = record_.at("state") == RunState::complete;
-        if (is_complete) directory_.remove_replaced();
+        if (!is_complete) {
+            record_["state"] = RunState::complete;
+            write_record(directory_, record_, watch_);
+        }
+        directory_.remove_replaced();
         log_info("{}: {}", directory_.root().string(),
-                 is_complete ? "already complete"
-                             : "already simulated; nothing is drawn because of --no-render");
+                 is_complete || options_.draw
+                     ? "already complete"
+                     : "already simulated; nothing is drawn because of --no-render");
         return std::move(record_);
     }
 

@@ -55,6 +55,9 @@ std::string lines_beside(const std::string& text, const std::string& other) {
     return joined(beside, ", ") + (more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
+// Not a file, but what came of one.
+bool is_as_read(const RunInput& input) { return input.role.starts_with("what the "); }
+
 std::string difference(const RunInput& now, const RunInput& then) {
     const auto told = [](const RunInput& of) {
         return of.file.empty() ? std::string("none") : of.file.string();
@@ -156,7 +159,8 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
     }
     if (!there.said.empty()) add_said(there.said, here.said, found);  // an older build said nothing
     for (const RunInput& input : here.input) {
-        if (is_said(input)) continue;
+        // What a file was read as differs by what else does, and is told where nothing is.
+        if (is_said(input) || (is_as_read(input) && !found.empty())) continue;
         const RunInput* old = find_role(there, input.role);
         if (old == nullptr) {
             found.push_back(fmt::format("{} ({}) is new", input.role, input.file.string()));
@@ -166,7 +170,8 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
     }
     for (const RunInput& input : there.input) {
         if (!is_said(input) && find_role(here, input.role) == nullptr) {
-            found.push_back(fmt::format("{} ({}) is gone", input.role, input.file.string()));
+            found.push_back(
+                fmt::format("{} ({}) is not read any more", input.role, input.file.string()));
         }
     }
     return found;

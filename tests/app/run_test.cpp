@@ -83,16 +83,20 @@ TEST_CASE(
     CHECK(again.err.find("already complete") != std::string::npos);
     CHECK(files_below(run) == before);
 
-    // A run whose drawing was cut short is not called complete where none is to be drawn.
+    // One whose drawing was cut short is then as it would have been without: nothing is drawn.
     const std::string complete = before.at("run.json");
     Json undrawn = Json::parse(complete);
     undrawn["state"] = "simulated";
+    undrawn.erase("plots");  // what is told last
     put_text(run / "run.json", undrawn.dump());
     const Outcome not_drawn =
         run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
     CHECK(not_drawn.code == 0);
     CHECK(not_drawn.err.find("already complete") == std::string::npos);
     CHECK(not_drawn.err.find("already simulated") != std::string::npos);
+    const Json ended = Json::parse(bytes_of(run / "run.json"));
+    CHECK(ended.at("state") == "complete");
+    CHECK(ended.at("plots") == Json::parse(complete).at("plots"));
     put_text(run / "run.json", complete);
 
     // Lost pictures come back as they were, without simulating again.

@@ -218,6 +218,14 @@ TEST_CASE("the lock of a process that died here is taken over, that of another h
     CHECK(code_of([&] { const RunDirectory run(root, identity_of("1")); }) == ExitCode::foreign);
 }
 
+TEST_CASE("what a run that was killed at its start has left is no other's") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "run";
+    put_text(root / "..swage-run.part4194303", "{");
+    { const RunDirectory run(root, identity_of("1")); }
+    CHECK_FALSE(fs::exists(root / "..swage-run.part4194303"));
+}
+
 TEST_CASE("what differs between two runs is told item by item") {
     RunIdentity there = identity_of("1"), here = identity_of("1");
     CHECK(differences(there, here).empty());
@@ -232,6 +240,14 @@ TEST_CASE("what differs between two runs is told item by item") {
     there.build = "0123";
     REQUIRE(differences(there, here).size() == 1);
     CHECK(differences(there, here)[0].find("another build of swage") == 0);
+    // What comes of something else that differs is not told beside it.
+    there = here = identity_of("1");
+    there.input.push_back({"what the mesh was read as", "a.obj", "5"});
+    here.input.push_back({"what the mesh was read as", "a.obj", "6"});
+    CHECK(differences(there, here).size() == 1);
+    here.input[1].hash = "9";
+    REQUIRE(differences(there, here).size() == 1);
+    CHECK(differences(there, here)[0].find("what the") == std::string::npos);
 }
 
 TEST_CASE("of a machine that was edited it is told what it says now and what it said then") {
