@@ -38,11 +38,20 @@ struct Box {
     bool contains(const Vec3& point) const {
         return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
     }
+    // 0: it is inside.
+    double gap_to(const Vec3& point) const {
+        return (low - point).cwiseMax(point - high).cwiseMax(0.0).norm();
+    }
     bool overlaps(const Box& other) const {
         return (low.array() <= other.high.array()).all() &&
                (other.low.array() <= high.array()).all();
     }
 };
+
+// 0: they overlap.
+inline double gap_between(const Box& a, const Box& b) {
+    return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
+}
 
 inline Box box_of(const std::vector<Vec3>& points) {
     Box box;

@@ -116,11 +116,13 @@ bool BlockSolver::can_be_rescued() const {
            bodies_[0].cells_alone() != nullptr;
 }
 
-// Steps from `begin` to `end`, which are at most kBlock and end at a leg's end or before it.
+// Steps from `begin` to `end`, which are at most kBlock and end at a leg's end or before it; or one
+// as long as a free flight.
 struct BlockSolver::Block {
     Drive begin;
     double end, dt;
     long count;
+    bool flies = false;
 };
 
 // Of a try, which may not be the first: speeds are then as shorter steps have them, and what the
@@ -140,14 +142,18 @@ void BlockSolver::start_books(const std::vector<Stored>& before, bool again, Mov
 
 // The block's steps, up to the first with which something is wrong.
 Finding BlockSolver::take(const Way& way, const Block& block, MoveOutcome& outcome) {
-    const auto& [begin, end, dt, count] = block;
+    const auto& [begin, end, dt, count, flies] = block;
     bodies_.begin_block(is_implicit(), outcome);
+    if (flies) {
+        bodies_.fly(begin, way.at(end), first_step(share_ * step_), outcome);
+        bodies_.end_block(outcome);
+        return {};
+    }
     Drive before = begin;
     for (long n = 1; n <= count; ++n) {
         throw_if_interrupted();
         const double time = n == count ? end : begin.time + double(n) * dt;
-        const Drive now =
-            time >= way.to.time ? way.to : drive_between(way.from, way.to, way.at(time));
+        const Drive now = way.at(time);
         bodies_.wake_stirred(before, now, dt, outcome);
         std::vector<double> gone(bodies_.size(), 0.0);
         std::vector<Finding> found(bodies_.size());
@@ -180,6 +186,13 @@ Finding BlockSolver::take(const Way& way, const Block& block, MoveOutcome& outco
 BlockSolver::Block BlockSolver::next_block(const Way& way, const Drive& begin) {
     const double left = way.to.time - begin.time;
     const double longest = longest_step(way.to.time - way.from.time);
+    if (has_half_kicks() && halvings_ == 0) {
+        const double free = bodies_.free_time(way.from, way.to, begin);
+        if (free > kWorthFlying * longest) {
+            const double flight = std::min(free, left);
+            return {begin, free < left ? begin.time + free : way.to.time, flight, 1, true};
+        }
+    }
     const double parts = std::max(1.0, std::ceil(left / longest * (1 - 1e-9)));
     if (!(parts < 1e15)) {
         fail(ExitCode::stopped, "{}: step {} at {:.6g} s would be shorter than {:.3g} s",
@@ -224,7 +237,7 @@ void BlockSolver::keep(const Block& block, MoveOutcome& outcome) {
     }
     steps_ += block.count;
     outcome.steps += block.count;
-    outcome.shortest_step = std::min(outcome.shortest_step, block.dt);
+    if (!block.flies) outcome.shortest_step = std::min(outcome.shortest_step, block.dt);
     if (rescued_blocks_ > 0) {
         outcome.rescued += block.count;
         if (--rescued_blocks_ == 0) share_ = 1;
@@ -271,14 +284,14 @@ MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
     bool is_begun = false;
     for (Drive begin = from; begin.time < to.time;) {
         const Block block = next_block(way, begin);
-        const double lag = has_half_kicks() ? block.dt : 0;
+        const double lag = has_half_kicks() && !block.flies ? block.dt : 0;
         const std::vector<Stored> before =
             goes_on ? bodies_.still_stored(lag) : bodies_.stored(begin, lag);
         if (begin.time == from.time) start_books(before, std::exchange(is_begun, true), outcome);
         bodies_.save(may_crush());
         const std::vector<BodyOutcome> so_far = outcome.body;
         Finding found = take(way, block, outcome);
-        const Drive now = block.end >= to.time ? to : drive_between(from, to, way.at(block.end));
+        const Drive now = way.at(block.end);
         if (!found) {
             const std::vector<Stored> after = bodies_.stored(now, lag);
             for (std::size_t b = 0; b < bodies_.size(); ++b) outcome.body[b].after = after[b];

@@ -60,7 +60,11 @@ class BlockSolver {
   private:
     struct Way {
         const Drive &from, &to;
-        double at(double time) const { return (time - from.time) / (to.time - from.time); }
+        Drive at(double time) const {
+            return time >= to.time
+                       ? to
+                       : drive_between(from, to, (time - from.time) / (to.time - from.time));
+        }
     };
     double longest_step(double leg);
     bool is_implicit() const {

@@ -18,10 +18,6 @@ namespace {
 constexpr double kWay = 0.45;              // spacings that anything may go between searches
 constexpr std::size_t kThreadShare = 128;  // contacts that a thread is worth waking for
 
-double box_gap(const Box& a, const Box& b) {
-    return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
-}
-
 }  // namespace
 
 BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSettings& settings)
@@ -118,7 +114,7 @@ void BodyContact::renew_all(const std::vector<char>& asleep) {
     std::vector<std::size_t> were = std::exchange(near_, {});
     for (std::size_t w = 0; w < way_.size(); ++w) {
         const auto [from, onto, back] = pair_[w];
-        const double gap = box_gap(box[from], box[onto]);
+        const double gap = gap_between(box[from], box[onto]);
         const bool near = from == onto || gap <= 2 * step;
         allowance_ = std::min(allowance_, near ? step : 0.5 * gap);
         const bool was_near = std::binary_search(were.begin(), were.end(), w);

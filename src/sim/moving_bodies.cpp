@@ -8,7 +8,8 @@ namespace swage {
 
 MovingBodies::MovingBodies(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                            const SimSettings& settings)
-    : state_(bodies.size()),
+    : apparatus_(apparatus),
+      state_(bodies.size()),
       contact_(is_explicit(settings.solver) ? bodies : std::vector<Aggregate*>{}, settings),
       sleeping_(bodies, settings),
       asleep_since_(bodies.size()),
@@ -103,6 +104,34 @@ void MovingBodies::wake(std::size_t b, MoveOutcome& outcome) {
     if (!in_block_) return;
     save_one(b);  // it lies as it did when the block began
     body_[b].begin_block(outcome.body[b]);
+}
+
+std::vector<Flyer> MovingBodies::flyers() const {
+    std::vector<Flyer> all;
+    for (std::size_t b = 0; b < body_.size(); ++b) {
+        const std::optional<Vec3> velocity =
+            is_asleep(b) ? std::nullopt : body_[b].flight_velocity();
+        if (!velocity) return {};
+        const Aggregate& matter = body_[b].matter();
+        all.push_back(
+            {&matter.particle_position, matter.lattice.spacing, body_[b].touch(), *velocity});
+    }
+    return all;
+}
+
+double MovingBodies::free_time(const Drive& from, const Drive& to, const Drive& now) const {
+    if (from.gravity_strength != to.gravity_strength) return 0;
+    const std::vector<Flyer> flying = flyers();
+    if (flying.empty()) return 0;
+    return swage::free_time(flying, apparatus_, from, to, now, body_[0].gravity());
+}
+
+void MovingBodies::fly(const Drive& before, const Drive& now, double step, MoveOutcome& outcome) {
+    const std::vector<Flyer> flying = flyers();
+    for_all_awake(
+        [&](std::size_t b) { body_[b].fly(before, now, flying[b].velocity, outcome.body[b]); });
+    meet(now, step, Meet::anew, outcome);
+    contact_.commit(sleeping_.asleep());
 }
 
 void MovingBodies::wake_stirred(const Drive& before, const Drive& now, double step,

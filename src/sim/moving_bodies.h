@@ -11,6 +11,7 @@
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/body_contact.h"
+#include "sim/free_flight.h"
 #include "sim/move_outcome.h"
 #include "sim/moving_body.h"
 #include "sim/settings.h"
@@ -66,6 +67,12 @@ class MovingBodies {
     // Cells of a body that may be inside out in the block.
     int may_be_inside_out(std::size_t body) const { return inside_out_[body]; }
 
+    // How long they fly from here, on the way from one drive to another, before any can touch
+    // anything; 0: not all do [s].
+    double free_time(const Drive& from, const Drive& to, const Drive& now) const;
+    // They fly, and the speeds go on from there by a step of this length [s].
+    void fly(const Drive& before, const Drive& now, double step, MoveOutcome& outcome);
+
     // A step [s] begins: wakes what something has come to move since it fell asleep.
     void wake_stirred(const Drive& before, const Drive& now, double step, MoveOutcome& outcome);
     // It is kept, in which no particle of each body went farther than its `way` [m], and all forces
@@ -94,8 +101,10 @@ class MovingBodies {
     // Adds what bodies in contact do to each other in a step of this length [s] from here.
     void meet(const Drive& now, double step, Meet how, MoveOutcome& outcome);
     void wake(std::size_t body, MoveOutcome& outcome);
+    std::vector<Flyer> flyers() const;  // none: not all fly
     void wake_neighbours(const Drive& now, MoveOutcome& outcome);
 
+    const Apparatus& apparatus_;
     std::vector<MovingBody> body_;
     std::vector<MovingBody::State> state_;
     BodyContact contact_;

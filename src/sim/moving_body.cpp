@@ -7,6 +7,7 @@
 
 #include "base/portable_math.h"
 #include "sim/crushed_cells.h"
+#include "sim/free_flight.h"
 #include "sim/lane_memory.h"
 #include "sim/vector_clones.h"
 #include "sim/vector_sums.h"
@@ -107,7 +108,9 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       touches_(!apparatus.tool.empty()),
       remembers_(breaks_ || matter.yields()),
       implicit_(settings.solver == Solver::implicit_steps),
-      saves_branches_(settings.solver == Solver::energy_stepped) {
+      saves_branches_(settings.solver == Solver::energy_stepped),
+      flies_(settings.solver == Solver::explicit_steps && apparatus.grip.empty() &&
+             apparatus.blade.empty() && apparatus.load.empty() && !drag_.acts()) {
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
         stiffens_ = stiffens_ || matter.material_at(n).elasticity == Elasticity::storakers;
     }
@@ -176,6 +179,27 @@ double MovingBody::move(double kick, double step) {
     for (double one : of_each_chunk(x.size(), move_chunk))
         most = std::isnan(one) || std::isnan(most) ? kLost : std::max(one, most);
     return step * std::sqrt(most);
+}
+
+std::optional<Vec3> MovingBody::flight_velocity() const {
+    if (!flies_ || inside_out_ > 0) return std::nullopt;
+    return swage::flight_velocity(matter_, force_, step_);
+}
+
+void MovingBody::fly(const Drive& before, const Drive& now, const Vec3& velocity,
+                     BodyOutcome& outcome) {
+    const double time = now.time - before.time;
+    const Vec3 faster = time * gravity_, way = time * (velocity + 0.5 * faster);
+    const auto add = [](const Vec3& more, Vec3Array& to) {
+        for (std::size_t p = 0; p < to.size(); ++p) to.add(p, more);
+    };
+    add(faster, matter_.particle_velocity);
+    add(way, matter_.particle_position);
+    find_candidates(now);
+    begin_step(now);
+    find_forces(now, 0, outcome);
+    contacts_.commit(now);
+    pushes_.commit(matter_, now, outcome.load_work);
 }
 
 void MovingBody::let_go() {

@@ -52,6 +52,11 @@ class MovingBody {
     // where one is lost [m].
     double move(double kick, double step);
     void kick(double kick) { move(kick, 0); }
+    // Its velocity where it flies (sim/free_flight.h) but for tools and other bodies [m/s].
+    std::optional<Vec3> flight_velocity() const;
+    const TouchPoints* touch() const { return contacts_.at_rest().pairs().touch(); }
+    // Flies from one drive to another at this velocity.
+    void fly(const Drive& before, const Drive& now, const Vec3& velocity, BodyOutcome& outcome);
     // Forces at the present positions, at which a step of this length [s] has just ended.
     void find_forces(const Drive& now, double step, BodyOutcome& outcome);
     // The step is kept.
@@ -170,6 +175,7 @@ class MovingBody {
     bool stiffens_ = false;  // as it is pressed, far
     bool implicit_;
     bool saves_branches_;
+    bool flies_;  // where nothing is near
     // In the branches [J]: now, negative where it is not known; when the block began.
     double branch_energy_ = -1, block_energy_ = 0;
     Vec3 gravity_ = Vec3::Zero();

@@ -67,6 +67,7 @@ class ToolPairs {
         return !(clearance_[n] > moved) && !pair_[n].gone;
     }
 
+    const TouchPoints* touch() const { return touch_.get(); }  // null where there is no tool
     const SurfacePoints& points() const { return touch_->points(); }
     const Tool& tool(const Pair& pair) const { return apparatus_->tool[pair.tool]; }
     double friction(const Pair& pair) const { return tool(pair).friction_on(body_); }

@@ -43,13 +43,16 @@ TEST_CASE("a particle without a place stops the run, and is named") {
 
 TEST_CASE("a particle that would go far in a step makes the steps short, and none does") {
     Aggregate m = block();
-    const Apparatus nothing;
+    Apparatus pushes_by_nothing;  // and so keeps it from flying at once
+    pushes_by_nothing.load.push_back(push_below(m, 0));
     const double dt = explicit_step(m, motion_settings());
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         m.particle_velocity.set(p, Vec3(10 * 0.1 / dt, 0, 0));  // ten spacings a stable step
     }
-    Simulation simulation(m, nothing, motion_settings());
-    const FrameReport r = simulation.advance(still(0), still(10 * dt));
+    Simulation simulation(m, pushes_by_nothing, motion_settings());
+    Drive begin = still(0), end = still(10 * dt);
+    begin.load_strength = end.load_strength = {1};
+    const FrameReport r = simulation.advance(begin, end);
     CHECK(r.shortest_step < 0.031 * dt);
     CHECK(r.rejected == 0);
     CHECK(r.steps >= 333);

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What flies by itself goes in one step as far as nothing can touch it, and as short steps have it.
+#include "sim/advance.h"
+#include "sim/free_flight.h"
+#include "tests/catch.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+const Vec3 kGravity(0, -9.81, 0);
+const Material kStiff{.young_modulus = 1e8, .density = 1000, .damping_ratio = 0};
+
+struct Scene {
+    Apparatus apparatus;
+    std::vector<Pose> from, to;  // of each tool, where a leg begins and where it ends
+    std::vector<Aggregate> body;
+    SimSettings settings = motion_settings();
+
+    Scene() {
+        apparatus.name = "drop";
+        settings.gravity = kGravity;
+    }
+    void add_tool(const Shape& shape, const Pose& from_pose, const Pose& to_pose) {
+        apparatus.tool.push_back({"tool", shape, 0.3});
+        from.push_back(from_pose);
+        to.push_back(to_pose);
+    }
+    void add_floor() {  // its upper side at y = 0
+        const Pose stands{Quat::Identity(), Vec3(0, -1, 0)};
+        add_tool(BoxShape{Vec3(50, 2, 50), 0}, stands, stands);
+    }
+    Aggregate& add_block(const Pose& pose, const Vec3& velocity,
+                         const Material& material = kStiff) {
+        body.push_back(make_block(3, 2, 4, 0.1, material));
+        place(body.back(), pose);
+        for (std::size_t p = 0; p < body.back().particle_count(); ++p) {
+            body.back().particle_velocity.set(p, velocity);
+        }
+        return body.back();
+    }
+    Drive drive(double time, const std::vector<Pose>& tool) const {
+        Drive d = still(time);
+        d.world_from_tool = tool;
+        return d;
+    }
+    // One leg of this time. `steps`: it takes as short ones as ever, for a load that does nothing
+    // could come to do something.
+    FrameReport go(double time, bool steps = false) {
+        if (steps) {
+            Load& idle = apparatus.load.emplace_back();
+            idle.name = "idle";
+            idle.point = {0};
+            idle.force = {Vec3::Zero()};
+        }
+        std::vector<Aggregate*> bodies;
+        for (Aggregate& m : body) bodies.push_back(&m);
+        Simulation simulation(bodies, apparatus, settings);
+        Drive begin = drive(0, from), end = drive(time, to);
+        begin.load_strength = end.load_strength =
+            std::vector<double>(apparatus.load.size(), steps ? 1.0 : 0.0);
+        return simulation.advance(begin, end);
+    }
+};
+
+double farthest_apart(const Vec3Array& a, const Vec3Array& b) {
+    double most = 0;
+    for (std::size_t p = 0; p < a.size(); ++p) most = std::max(most, (a.at(p) - b.at(p)).norm());
+    return most;
+}
+
+// Steps strike at other times in the two, so that they differ by what a step makes of a blow: in
+// steps of this share of the longest.
+void check_same(const Scene& one, const Scene& other, double share) {
+    for (std::size_t b = 0; b < one.body.size(); ++b) {
+        CHECK(farthest_apart(one.body[b].particle_position, other.body[b].particle_position) <
+              0.01 * share);
+    }
+}
+
+const Pose kAslant{turn_by(Vec3(0.4, 0.2, -0.3)), Vec3(0.1, 5, -0.2)};
+
+}  // namespace
+
+TEST_CASE("what falls past nothing takes one step, to where gravity has it") {
+    Scene scene;
+    scene.add_floor();
+    const Vec3 v(0.7, 1.2, -0.4);
+    const Aggregate before = scene.add_block(kAslant, v);
+    const double t = 0.5;
+    const FrameReport report = scene.go(t);
+    CHECK(report.steps == 1);
+    const Aggregate& m = scene.body[0];
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 at = before.particle_position.at(p) + t * v + 0.5 * t * t * kGravity;
+        CHECK((m.particle_position.at(p) - at).norm() < 1e-13);
+        CHECK((m.particle_velocity.at(p) - (v + t * kGravity)).norm() < 1e-14);
+    }
+    const double work = m.mass() * kGravity.dot(t * v + 0.5 * t * t * kGravity);
+    CHECK(report.gravity_work == Approx(work).epsilon(1e-12));
+    CHECK(report.kinetic - report.kinetic_at_start == Approx(work).epsilon(1e-12));
+    CHECK(std::abs(report.remainder) < 1e-12 * std::abs(work));
+}
+
+TEST_CASE("what flies strikes and rebounds as it does in steps all the way") {
+    for (double share : {0.2, 0.05}) {
+        for (double tilt : {0.0, 0.5}) {
+            CAPTURE(share, tilt);
+            const auto make = [&] {
+                Scene scene;
+                scene.settings.step_safety = share;
+                scene.add_floor();
+                const Pose pose{turn_by(Vec3(tilt, 0, 0.7 * tilt)), Vec3(0, 1.5, 0)};
+                scene.add_block(pose, Vec3(2, 0, 0.5));
+                return scene;
+            };
+            Scene flies = make(), steps = make();
+            const FrameReport flown = flies.go(0.6), stepped = steps.go(0.6, true);
+            CHECK(flown.damped > 1);  // it has struck
+            CHECK(flown.steps < 0.25 * double(stepped.steps));
+            check_same(flies, steps, share);
+            CHECK(flown.kinetic == Approx(stepped.kinetic).epsilon(0.05 * share));
+            CHECK(std::abs(flown.remainder) < 0.2 * share * flown.kinetic_at_start);
+        }
+    }
+}
+
+TEST_CASE("bodies that fly at each other meet as they do in steps all the way") {
+    for (double share : {0.2, 0.05}) {
+        CAPTURE(share);
+        const auto make = [&] {
+            Scene scene;
+            scene.settings.step_safety = share;
+            scene.settings.gravity = Vec3(0, -1, 0);
+            scene.add_block({Quat::Identity(), Vec3(-2, 0, 0)}, Vec3(3, 0, 0));
+            scene.add_block({Quat::Identity(), Vec3(2, 0.03, 0.05)}, Vec3(-4, 0, 0));
+            return scene;
+        };
+        Scene flies = make(), steps = make();
+        const FrameReport flown = flies.go(0.6), stepped = steps.go(0.6, true);
+        CHECK(flies.body[0].particle_velocity.at(0).x() < 0);
+        CHECK(flown.steps < 0.25 * double(stepped.steps));
+        check_same(flies, steps, share);
+    }
+}
+
+TEST_CASE("short legs take a step each, however long the flight is") {
+    Scene scene;
+    scene.add_floor();
+    scene.add_block(kAslant, Vec3::Zero());
+    Simulation simulation(scene.body[0], scene.apparatus, scene.settings);
+    long steps = 0;
+    for (int n = 0; n < 100; ++n) {
+        steps +=
+            simulation
+                .advance(scene.drive(2e-3 * n, scene.from), scene.drive(2e-3 * (n + 1), scene.from))
+                .steps;
+    }
+    CHECK(steps == 100);
+    CHECK(scene.body[0].particle_velocity.at(3).y() == Approx(-9.81 * 0.2).epsilon(1e-12));
+}
+
+TEST_CASE("bodies that are dropped together do not keep each other from flying") {
+    Scene scene;
+    scene.add_floor();
+    scene.add_block({Quat::Identity(), Vec3(0, 5, 0)}, Vec3::Zero());
+    scene.add_block({Quat::Identity(), Vec3(0.2, 5.21, 0)}, Vec3::Zero());
+    CHECK(scene.go(0.8).steps == 1);
+}
+
+TEST_CASE("what flies meets a tool that comes to it, straight or turning") {
+    for (bool turns : {false, true}) {
+        CAPTURE(turns);
+        const double share = 0.05;
+        const auto make = [&] {
+            Scene scene;
+            scene.settings.step_safety = share;
+            const Pose low{Quat::Identity(), Vec3(0, -4, 0)};
+            const Pose high = turns ? Pose{turn_by(Vec3(0, 0, 1.5)), Vec3(0, -4, 0)}
+                                    : Pose{Quat::Identity(), Vec3(0, -0.5, 0)};
+            // A paddle that swings up from the side, or a plate that rises.
+            scene.add_tool(BoxShape{turns ? Vec3(8, 0.4, 8) : Vec3(6, 0.4, 6), 0.05}, low, high);
+            scene.add_block({Quat::Identity(), Vec3(turns ? 1.5 : 0, 0, 0)}, Vec3::Zero());
+            return scene;
+        };
+        Scene flies = make(), steps = make();
+        const FrameReport flown = flies.go(0.5), stepped = steps.go(0.5, true);
+        CHECK(flown.work > 0.1);  // it was struck
+        CHECK(flown.steps < 0.8 * double(stepped.steps));
+        CHECK(flown.kinetic == Approx(stepped.kinetic).epsilon(0.01));
+        check_same(flies, steps, share);
+    }
+}
+
+TEST_CASE("what is strained, spins or is braked takes its steps") {
+    const double step = 1e-3;
+    Scene scene;
+    Aggregate& m = scene.add_block({}, Vec3(1, 2, 3));
+    Vec3Array force;
+    force.resize(m.particle_count());
+    REQUIRE(flight_velocity(m, force, step));
+    CHECK((*flight_velocity(m, force, step) - Vec3(1, 2, 3)).norm() < 1e-15);
+    const double a = m.lattice.spacing;
+    force.set(5, Vec3(0, 2e-9 * a * m.particle_mass[5] / (step * step), 0));
+    CHECK(!flight_velocity(m, force, step));
+    force.set(5, Vec3::Zero());
+    m.particle_velocity.add(7, Vec3(2e-9 * a / step, 0, 0));
+    CHECK(!flight_velocity(m, force, step));
+
+    const auto takes_steps = [](const auto& change) {
+        Scene one;
+        one.add_block({}, Vec3(0, 1, 0));
+        change(one);
+        return one.go(0.2).steps > 8;
+    };
+    CHECK(!takes_steps([](Scene&) {}));
+    CHECK(takes_steps([](Scene& one) { one.body[0].particle_position.add(0, Vec3(1e-5, 0, 0)); }));
+    CHECK(takes_steps([](Scene& one) { one.settings.medium_density = 1; }));
+    CHECK(takes_steps([](Scene& one) {
+        Aggregate& block = one.body[0];
+        for (std::size_t p = 0; p < block.particle_count(); ++p) {
+            const Vec3 arm = block.particle_position.at(p) - block.centre();
+            block.particle_velocity.add(p, Vec3(0, 0, 0.5).cross(arm));
+        }
+    }));
+    CHECK(takes_steps([](Scene& one) {
+        one.body[0].material.damping_ratio = 0.1;
+        one.settings.solver = Solver::euler;
+    }));
+}
