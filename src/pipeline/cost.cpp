@@ -18,7 +18,9 @@
 #include "pipeline/folded_bodies.h"
 #include "pipeline/free_room.h"
 #include "pipeline/memory_cost.h"
+#include "pipeline/rounded_text.h"
 #include "pipeline/stage_machine.h"
+#include "pipeline/start_flight.h"
 #include "pipeline/start_overlap.h"
 #include "pipeline/stiffness_note.h"
 #include "sim/advance.h"
@@ -47,6 +49,7 @@ constexpr double kFarMore = 10;    // steps than explicit ones
 // Cells, over those that are to be counted, before it is given up: of so few a body may have no
 // matter, and a machine's part no hold.
 constexpr double kCountedInVain = 10;
+constexpr double kWorthTelling = 0.05;  // of a stage, that is free flight
 // Of a full lattice: neither slivers nor damping, which takes up to 4 times as many.
 constexpr double kStepsPerCrossing = 2.1;
 
@@ -152,9 +155,15 @@ std::string what_time_hangs_on(const SceneSpec& scene) {
     return all.empty() ? "how soon it comes to rest" : joined(all, " and ");
 }
 
-// `counted`: or null. `equilibria`: of the first stage, 0: not known.
+// What is known of the first stage alone.
+struct FirstStage {
+    long equilibria = 0;  // 0: not known
+    double flight = 0;    // [s]
+};
+
+// `counted`: or null.
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
-            const RunOptions& options, const CountedMatter* counted, long equilibria) {
+            const RunOptions& options, const CountedMatter* counted, const FirstStage& first) {
     cost.frames = frame_count(scene);
     cost.tool_give = softest_give(scene, input, counted);
     cost.steps = cost.seconds = {};
@@ -170,7 +179,8 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
         way = std::max(way, bytes_of_way(stage.machine, stage.frames, moves));
         if (moves) load.steps_per_second = steps_per_second(scene, cost, counted, stage.sim);
         const bool is_first = &stage == &scene.stage.front();
-        const StageTime time = stage_time(scene, stage, load, is_first ? equilibria : 0);
+        load.flight = is_first ? first.flight : 0;
+        const StageTime time = stage_time(scene, stage, load, is_first ? first.equilibria : 0);
         cost.steps.add(time.steps);
         cost.seconds.add(time.seconds);
     }
@@ -283,8 +293,15 @@ void count(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& 
         const std::string note = stiffness_note(stage, bodies);
         if (!note.empty()) cost.warning.bodies.push_back(stage.name + ": " + note);
     }
+    const double flight =
+        start_flight(first, machine, bodies, 1 / steps_per_second(scene, cost, &made, first.sim));
+    if (flight > kWorthTelling * first.duration) {
+        cost.note.push_back(
+            fmt::format("{}: nothing can touch in the first {}, which take next to no steps",
+                        first.name, rounded_text(flight, Quantity::time, 3)));
+    }
     add_up(cost, scene, input, options, &made,
-           equilibria_of(first, machine, made, cost.work_piece().spacing));
+           {equilibria_of(first, machine, made, cost.work_piece().spacing), flight});
 }
 
 }  // namespace
@@ -319,7 +336,7 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     }
     add_warnings(scene, input, cost);
     cost.mold = sum_of(mold);
-    add_up(cost, scene, input, options, nullptr, 0);
+    add_up(cost, scene, input, options, nullptr, {});
     note_more_steps(scene, cost);
     return cost;
 }

@@ -161,7 +161,8 @@ StageTime relaxed(const SceneSpec& scene, const StageSpec& stage, const WorkLoad
 StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load) {
     const Strikes by = strikes(scene, stage);
     const bool is_driven = !stage.machine.stands() || !stage.machine.load.empty();
-    const double elastic = stage.duration * load.steps_per_second;
+    const double elastic = std::max(double(stage.frames),
+                                    (stage.duration - load.flight) * load.steps_per_second);
     CostRange steps = {elastic, elastic};
     if (scene.yields()) {
         const double driven = is_driven ? kFlattenedByMachines : 1;

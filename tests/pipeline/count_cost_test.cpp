@@ -45,7 +45,7 @@ constexpr double kAll = 1e9, kFew = 3000;
 
 const char* const kBend = "\"bend\"\nangle = \"90 deg\"\n";
 const char* const kFloor =
-    "\"floor\"\ndrop = \"1 mm\"\ngravity = \"9.81 m/s2\"\nduration = \"1 ms\"\n";
+    "\"floor\"\ndrop = \"0 mm\"\ngravity = \"9.81 m/s2\"\nduration = \"1 ms\"\n";
 const char* const kPress = "\"press\"\ndepth = 0.3\n";
 
 void check_near(const char* what, double told, double wanted, double factor) {
@@ -197,4 +197,22 @@ TEST_CASE("a run is refused for what it has to write, not for what it keeps to g
     const RunCost told = run.cost(12, kAll);
     CHECK(told.least_disk_bytes < 0.5 * told.disk_bytes);
     CHECK(told.least_disk_bytes > 0);
+}
+
+TEST_CASE("of a fall only the steps are told that come once something can touch") {
+    const auto steps = [](const std::string& drop, double seconds, const std::string& more = {}) {
+        CountedScene run("wrench", "steel_4340",
+                         fmt::format("\"floor\"\ndrop = \"{}\"\ngravity = \"9.81 m/s2\"\n"
+                                     "duration = \"{} s\"\n{}",
+                                     drop, seconds, more));
+        return run.cost(8, kAll).steps.least;
+    };
+    const double after = 0.01;
+    const auto fall = [](double drop) { return std::sqrt(2 * drop / 9.81); };
+    const double low = steps("1 mm", fall(1e-3) + after);
+    check_near("fall of 1 m", steps("1 m", fall(1) + after), low, 1.02);
+    // It flies in a vacuum, by explicit steps.
+    CHECK(steps("1 m", fall(1) + after, "medium_density = 1.2") > 30 * low);
+    CHECK(steps("1 m", fall(1) + after, "solver = \"energy-stepped\"") > 30 * low);
+    CHECK(steps("1 m", 0.9 * fall(1)) == 3);  // a frame takes one
 }

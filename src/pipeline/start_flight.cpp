@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/start_flight.h"
+
+#include <list>
+
+#include "sim/free_flight.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kMostLooks = 200;  // each goes at least half of the way that is left
+
+}  // namespace
+
+double start_flight(const StageSpec& stage, const Machine& machine,
+                    const std::vector<NamedMatter>& bodies, double step) {
+    const SimSettings& sim = stage.sim;
+    const MachineSpec& spec = stage.machine;
+    const bool only_gravity = spec.grip.empty() && spec.blade.empty() && spec.load.empty() &&
+                              spec.gravity_strength.empty() && sim.medium_density == 0 &&
+                              sim.directional_drag == 0;
+    if (sim.solver != Solver::explicit_steps || !spec.stands() || !only_gravity) return 0;
+    std::list<TouchPoints> touch;
+    std::list<Vec3Array> position;
+    std::vector<Flyer> flying;
+    for (const NamedMatter& body : bodies) {
+        const Aggregate& matter = *body.matter;
+        Vec3Array force;
+        force.resize(matter.particle_count());
+        const std::optional<Vec3> velocity = flight_velocity(matter, force, step);
+        if (!velocity) return 0;
+        flying.push_back({&position.emplace_back(matter.particle_position), matter.lattice.spacing,
+                          &touch.emplace_back(matter), *velocity});
+    }
+    const Drive from = drive_at(machine, 0, stage.duration);
+    Drive to = from, now = from;
+    to.time = stage.duration;
+    for (int n = 0; n < kMostLooks && now.time < to.time; ++n) {
+        const double free = free_time(flying, machine.apparatus, from, to, now, sim.gravity);
+        if (!(free > kWorthFlying * step)) break;
+        const double time = std::min(free, to.time - now.time);
+        now.time += time;
+        auto at = position.begin();
+        for (Flyer& body : flying) {
+            const Vec3 way = time * (body.velocity + 0.5 * time * sim.gravity);
+            for (std::size_t p = 0; p < at->size(); ++p) at->add(p, way);
+            body.velocity += time * sim.gravity;
+            ++at;
+        }
+    }
+    return now.time;
+}
+
+}  // namespace swage
