@@ -197,3 +197,28 @@ TEST_CASE("what was pressed and came back is not said to have made energy by wha
     INFO(told);
     CHECK(!says(told, "books do not close"));
 }
+
+TEST_CASE("glass that goes to pieces at once gets a skin") {
+    // Of its broken faces some are filled from a place that their outlines have made another.
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml", run = scratch.path() / "run";
+    REQUIRE(run_swage({"make", "tube", "--out", (scratch.path() / "tube.obj").string()}).code == 0);
+    put_text(scene, R"([mesh]
+file = "tube.obj"
+velocity = [0, -42, 0]
+[material]
+name = "glass"
+[mold]
+across = 4
+[[stage]]
+machine = "floor"
+drop = "1 mm"
+frames = 2
+duration = "0.291 ms"
+)");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(fs::exists(run / "meshes/1-floor.obj"));
+}
