@@ -7,6 +7,7 @@
 #include "laws/volume_guard.h"
 #include "sim/cell_batch.h"
 #include "sim/connection_shares.h"
+#include "matter/spring_layout.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -15,14 +16,6 @@ namespace {
 
 // Of S with c = w and i = 1, which is soon found: below it no cell yields that never has.
 constexpr double kUnyielded = 0.25;
-
-constexpr Springs kShares = [] {
-    Springs shares{};
-    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-        shares[slot] = kCellConnection[slot].direction < kEdgeCount ? kEdgeShare : kDiagonalShare;
-    }
-    return shares;
-}();
 
 // Of numbers in a row, where only `count` may be touched.
 template <typename V, typename T>
@@ -101,7 +94,7 @@ SWAGE_INLINE void find_in_runs(const FlowTask& task) {
                     load_some<V>(matter.cell_plastic[slot].data() + cell, cells_left);
             }
             const V off = springs.strain[slot] - theta;
-            distortion += kShares[slot] * (off * off);
+            distortion += kSpringLayout.share[slot] * (off * off);
             shortest = smaller(shortest, total), longest = larger(longest, total);
         }
         const V alpha =
@@ -121,7 +114,7 @@ SWAGE_INLINE void find_in_runs(const FlowTask& task) {
                                  over * (corner[1][high] - corner[1][low]),
                                  over * (corner[2][high] - corner[2][low])};
         }
-        flows = return_springs<V>(law, springs, kShares, theta, alpha, may, r);
+        flows = return_springs<V>(law, springs, kSpringLayout, theta, alpha, may, r);
         return is_any(flows);
     };
     for (const CellRun* run = task.run; run != task.run_end; ++run) {

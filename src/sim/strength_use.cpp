@@ -11,8 +11,10 @@
 #include "laws/spring_damper.h"
 #include "laws/yield.h"
 #include "matter/broken_cells.h"
+#include "matter/spring_layout.h"
 #include "sim/cell_volume.h"
 #include "sim/cracking.h"
+#include "sim/flowed_volume.h"
 #include "sim/mixed_cells.h"
 
 namespace swage {
@@ -64,21 +66,8 @@ Vec3 place_of(const Aggregate& matter, CellId cell) {
 }  // namespace
 
 double spring_stress(const Aggregate& matter, CellId cell, const std::array<ParticleId, 4>& row) {
-    CellSprings<double> springs;
-    Springs share;
-    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-        const CellConnection& c = kCellConnection[slot];
-        const int high = upper_corner(c);
-        const Vec3 way = (matter.particle_position.at(corner_particle(row, high)) -
-                          matter.particle_position.at(corner_particle(row, c.corner))) /
-                         reference_length(matter.lattice, c.direction);
-        springs.way[slot] = {way.x(), way.y(), way.z()};
-        const auto& plastic = matter.cell_plastic[slot];
-        springs.strain[slot] =
-            log_ratio(way.norm()) - (plastic.empty() ? 0.0 : double(plastic[cell]));
-        share[slot] = c.direction < kEdgeCount ? kEdgeShare : kDiagonalShare;
-    }
-    return frame_of(springs, share)
+    const CellSprings<double> springs = springs_of(matter, cell, row);
+    return frame_of(springs, kSpringLayout)
         .distortion(springs.strain)
         .stress(lattice_stiffness(matter.material.young_modulus, 1.0));
 }

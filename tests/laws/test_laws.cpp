@@ -9,6 +9,7 @@
 #include "laws/spring_damper.h"
 #include "laws/yield.h"
 #include "matter/lattice.h"
+#include "matter/spring_layout.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -73,7 +74,6 @@ namespace {
 // A cell of springs that is stretched by U and then turned, as it was molded otherwise.
 struct StrainedCell {
     CellSprings<double> springs;
-    Springs share;
 };
 struct Flowed {
     bool flows;
@@ -81,7 +81,7 @@ struct Flowed {
 };
 Flowed return_springs(const Yield& law, const StrainedCell& cell, double alpha) {
     Flowed r{};
-    r.flows = return_springs<double>(law, cell.springs, cell.share, 0, alpha, true, r.by);
+    r.flows = return_springs<double>(law, cell.springs, kSpringLayout, 0, alpha, true, r.by);
     return r;
 }
 StrainedCell strained_cell(const Mat3& gradient) {
@@ -92,7 +92,6 @@ StrainedCell strained_cell(const Mat3& gradient) {
         const Vec3 lies = gradient * n;
         cell.springs.way[slot] = {lies.x(), lies.y(), lies.z()};
         cell.springs.strain[slot] = std::log((gradient * n).norm());
-        cell.share[slot] = kCellConnection[slot].direction < 3 ? kEdgeShare : kDiagonalShare;
     }
     return cell;
 }
@@ -105,7 +104,7 @@ TEST_CASE("springs inside the yield surface do not flow, outside their stress re
     const Mat3 gradient = turn * stretch.asDiagonal() * turn.conjugate();
     const StrainedCell cell = strained_cell(gradient);
     const double shear = 8e10;
-    const SpringFrame<double> frame = frame_of(cell.springs, cell.share);
+    const SpringFrame<double> frame = frame_of(cell.springs, kSpringLayout);
     const auto stress_of = [&](const Springs& strain) {
         return frame.distortion(strain).stress(shear);
     };
@@ -151,10 +150,10 @@ TEST_CASE("the bound by which springs are passed over is one, and close where no
         for (int b = 0; b < 24; ++b) {
             const double off = round % 5 > 0 ? size * draw(engine) : 0;
             cell.springs.strain[b] = theta + off;
-            distortion += cell.share[b] * off * off;
+            distortion += kSpringLayout.share[b] * off * off;
         }
         const double q =
-            frame_of(cell.springs, cell.share).distortion(cell.springs.strain).stress(1);
+            frame_of(cell.springs, kSpringLayout).distortion(cell.springs.strain).stress(1);
         const double bound = most_stress(distortion, theta, low, high);
         CHECK(q <= bound * (1 + 1e-9) + 1e-5 * size);  // round-off of t^2 <i, i>
         if (bound > 0) closest = std::max(closest, q / bound);
@@ -176,7 +175,7 @@ TEST_CASE("what springs flow never gives energy, however they lie") {
         ++flowed;
         double taken = 0, all = 0;
         for (int b = 0; b < 24; ++b) {
-            const double c = cell.share[b] * dot(cell.springs.way[b], cell.springs.way[b]);
+            const double c = kSpringLayout.share[b] * dot(cell.springs.way[b], cell.springs.way[b]);
             taken += c * (cell.springs.strain[b] - 0.5 * flow.grows[b]) * flow.grows[b];
             all += c * cell.springs.strain[b] * cell.springs.strain[b];
         }
