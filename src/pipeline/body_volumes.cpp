@@ -2,6 +2,7 @@
 #include "pipeline/body_volumes.h"
 
 #include "sim/cell_volume.h"
+#include "sim/flowed_volume.h"
 #include "skin/skin_volume.h"
 
 namespace swage {
@@ -9,7 +10,8 @@ namespace swage {
 std::vector<BodyVolume> body_volumes(const std::vector<WorkPiece>& bodies) {
     std::vector<BodyVolume> volumes;
     for (const WorkPiece& body : bodies) {
-        volumes.push_back({present_volume(body.matter), enclosed_volume(body.skin, body.position)});
+        volumes.push_back({present_volume(body.matter), flowed_volume(body.matter),
+                           enclosed_volume(body.skin, body.position)});
     }
     return volumes;
 }

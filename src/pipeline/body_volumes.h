@@ -13,6 +13,7 @@ namespace swage {
 
 struct BodyVolume {
     double matter;               // present_volume() [m3]
+    double flowed;               // flowed_volume()
     std::optional<double> skin;  // what it encloses, where it is closed [m3]
 };
 std::vector<BodyVolume> body_volumes(const std::vector<WorkPiece>& bodies);

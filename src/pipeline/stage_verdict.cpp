@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "geometry/triangle_tree.h"
 #include "matter/cell_middle.h"
+#include "sim/flowed_volume.h"
 #include "sim/gripped_pieces.h"
 #include "sim/motion_guard.h"
 #include "sim/own_overlap.h"
@@ -23,6 +24,7 @@ namespace {
 constexpr double kLittleGain = 0.01;  // of the energy in play: no matter
 constexpr double kMostOfTaken = 0.2;  // likewise, of what friction and flow took
 constexpr double kSwollen = 0.01;     // of its volume that a skin may be off by untold
+constexpr double kShrunk = 0.01;      // likewise, that flow may change it by
 constexpr double kOverlap = 0.5;      // spacings that a body may lie in itself untold
 
 // Tools and grips carry what they hold so far, at most [m]; between frames they go straight.
@@ -86,17 +88,29 @@ double unresolved(const StageEnd& end) {
     return sum;
 }
 
+// What flow gave on the whole, where bodies hold none of it in a back stress [J].
+double flow_gave(const StageEnd& end) {
+    for (const WorkPiece& body : end.bodies) {
+        for (std::size_t m = 0; m < body.matter.material_count(); ++m) {
+            if (body.matter.material_at(m).shifts()) return 0;
+        }
+    }
+    return std::max(0.0, -end.last.plastic);
+}
+
 // Of what the bodies began with and were given, of what the books hold by now or of the most that
-// was stored on the way, the share that is missing or too much. Fracture takes energy: what it
-// gives is from nowhere. What contacts held at the start and were let go of has no part in it:
+// was stored on the way, the share that is missing or too much. Fracture and flow take energy: what
+// they give is from nowhere. What contacts held at the start and were let go of has no part in it:
 // it is booked as what is gone, and may be far more than all that the stage does.
-double unaccounted(const Books& first, const Books& b, double stored, double least) {
+double unaccounted(const Books& first, const Books& b, double stored, double least,
+                   double by_flow) {
     const double in = first.kinetic + first.elastic + std::abs(b.work) + std::abs(b.load_work) +
                       std::abs(b.gravity_work);
     const double out = b.kinetic + b.elastic + b.contact + b.plastic + b.damped + b.friction +
                        b.drag + std::abs(b.severed_energy) + std::max(0.0, b.fracture) +
                        std::max(0.0, b.set_free - b.contact_at_start);
-    const double play = std::max({in, out, stored}), gap = b.remainder + std::min(0.0, b.fracture);
+    const double play = std::max({in, out, stored}),
+                 gap = b.remainder + std::min(0.0, b.fracture) - by_flow;
     return play > least && std::abs(gap) > least ? gap / play : 0;
 }
 
@@ -183,6 +197,22 @@ std::string swollen(const StageEnd& end, const WorkPiece& body) {
         by > 0 ? "more" : "less",
         frame4 ? "skin.kind = \"mount\" keeps it"
                : "it has folded within single cells, and smaller ones make it less");
+}
+
+// Matter that has less or more of its volume by what flowed in the stage. Empty: hardly.
+std::string shrunk(const StageEnd& end, std::size_t body) {
+    const WorkPiece& piece = end.bodies[body];
+    const double by = flowed_volume(piece.matter) / end.volumes_before[body].flowed - 1;
+    if (std::abs(by) <= kShrunk) return {};
+    const bool springs = piece.matter.material.mechanics == Mechanics::springs;
+    return fmt::format(
+        "the matter of {} has {} {:.2g} % of its volume by flow, which should keep "
+        "it: {}",
+        end.bodies.size() == 1 ? "the work-piece" : piece.name, by < 0 ? "lost" : "gained",
+        100 * std::abs(by),
+        springs ? "springs that flow far fold within single cells; mechanics = "
+                  "\"cells\" keeps it"
+                : "try more frames or smaller cells");
 }
 
 std::string how_to_close(Solver solver, const Books& last) {
@@ -329,7 +359,8 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
         for (const std::string& one : idle_parts(end)) warn(one);
     }
     if (const std::string pressed = pressed_at_start(end); !pressed.empty()) warn(pressed);
-    const double share = unaccounted(end.first, end.last, end.totals.stored, unresolved(end));
+    const double share =
+        unaccounted(end.first, end.last, end.totals.stored, unresolved(end), flow_gave(end));
     const double taken = end.last.friction + end.last.plastic;
     // At rest, what snaps or slips through is lost, and no mistake.
     if (in_motion(sim.solver) ? std::abs(share) > kMostGain : share < -kMostGain) {
@@ -347,6 +378,9 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     for (const WorkPiece& body : end.bodies) {
         if (ended == StageEnded::interrupted) break;
         if (const std::string told = swollen(end, body); !told.empty()) warn(told);
+    }
+    for (std::size_t b = 0; b < end.bodies.size() && ended != StageEnded::interrupted; ++b) {
+        if (const std::string told = shrunk(end, b); !told.empty()) warn(told);
     }
     if (may_lie_in_itself(end) && ended != StageEnded::interrupted) {
         for (WorkPiece& body : end.bodies) {

@@ -142,7 +142,9 @@ constexpr KeyHelp kSceneKeys[] = {
      {},
      "explicit where bodies move by themselves, else quasistatic"},
     {"[[stage]]", "tolerance", "unbalanced force over the largest force; quasistatic"},
-    {"[[stage]]", "iteration_limit", "iterations after which the increment is halved; quasistatic"},
+    {"[[stage]]", "iteration_limit",
+     "iterations after which the increment is halved, and up to ten times as many while the body "
+     "still goes far or settles; quasistatic"},
     {"[[stage]]", "halving_limit",
      "times that an increment of the machine may be halved; quasistatic"},
     {"[[stage]]", "contact_stiffness", "stiffness of contact over that of a layer of cells",

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/stage_verdict.h"
 
+#include <cmath>
+#include <functional>
+
 #include "geometry/box_mesh.h"
 #include "pipeline/stage_machine.h"
 #include "sim/static_forces.h"
 #include "tests/catch.h"
 #include "tests/scene/scene_folder.h"
 #include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
 
 using namespace swage;
 
@@ -36,8 +40,9 @@ struct CutBar {
         return told_of(reading.scene->stage[0], last, 1, residual);
     }
 
-    std::string told_of(const StageSpec& stage, const FrameReport& last, int first_frame,
-                        double residual = 0) {
+    std::string told_of(
+        const StageSpec& stage, const FrameReport& last, int first_frame, double residual = 0,
+        const std::function<void()>& happens = [] {}) {
         const Machine machine = stage_machine(stage, bodies[0].matter, {}, Box{});
         StageTotals totals;
         totals.severed = 1;
@@ -45,6 +50,7 @@ struct CutBar {
         FrameReport first;
         first.body.resize(last.body.size());
         const std::vector<BodyVolume> volumes_before = body_volumes(bodies);
+        happens();
         const StageEnd end{.stage = stage,
                            .machine = machine,
                            .bodies = bodies,
@@ -181,4 +187,51 @@ TEST_CASE("a skin that swells though its matter flows is told of") {
     for (Vec3& p : piece.position) p.y() *= 1.02 / 1.009;
     piece.is_parted = true;
     CHECK_FALSE(told());
+}
+
+TEST_CASE("energy that flow gives is from nowhere, but what a back stress has stored") {
+    CutBar bar("copper");
+    const double work = 1e-6 * bar.stiffness();
+    const auto told = [&](double plastic) {
+        FrameReport last;
+        last.pieces = 2;
+        last.work = work, last.elastic = work - plastic, last.plastic = plastic;
+        return bar.told_of(bar.reading.scene->stage[0], last, 1);
+    };
+    CHECK_FALSE(is_open(told(0.3 * work)));
+    CHECK_FALSE(is_open(told(-0.01 * work)));
+    CHECK(is_open(told(-0.3 * work)));
+    bar.bodies[0].matter.material.back_stress = 1e7;
+    bar.bodies[0].matter.material.back_strain = 0.1;
+    CHECK_FALSE(is_open(told(-0.3 * work)));
+}
+
+TEST_CASE("volume that flow has changed in a stage is told, what pressure changes is not") {
+    const bool springs = GENERATE(true, false);
+    const auto told_after = [&](double size, double flowed) {
+        CutBar bar("copper");
+        Aggregate& matter = bar.bodies[0].matter;
+        if (springs) matter.material.mechanics = Mechanics::springs;
+        FrameReport last;
+        last.pieces = 2;
+        return bar.told_of(bar.reading.scene->stage[0], last, 1, 0, [&] {
+            test::deform(matter, [&](const Vec3& p) -> Vec3 { return size * p; });
+            matter.cell_history.assign(matter.cell_fill.size());
+            for (float& alpha : matter.cell_history.hardening()) alpha = 0.1f;
+            for (auto& slot : matter.cell_plastic) {
+                slot.assign(springs ? matter.cell_fill.size() : 0, float(std::log(flowed)));
+            }
+            for (int n = 0; n < 3 && !springs; ++n) {
+                for (float& back : matter.cell_history.row[n]) back = float(1 / flowed - 1);
+            }
+        });
+    };
+    const auto tells = [](const std::string& told) {
+        return told.find("of its volume by flow") != std::string::npos;
+    };
+    CHECK_FALSE(tells(told_after(1, 1)));
+    CHECK_FALSE(tells(told_after(0.98, 1)));
+    CHECK_FALSE(tells(told_after(0.999, 0.999)));
+    CHECK(told_after(0.98, 0.98).find("lost 5.9 % of its volume by flow") != std::string::npos);
+    CHECK(told_after(1.02, 1.02).find("gained 6.1 % of its volume by flow") != std::string::npos);
 }
