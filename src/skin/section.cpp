@@ -138,6 +138,7 @@ std::optional<SectionTriangles> fill_section(const Section& section) {
 
     SectionTriangles result;
     result.added = inner_points(section, cdt);
+    hint = vertex.back()->face();  // constraints have put others in place of the one it was
     for (std::size_t n = 0; n < result.added.size(); ++n) {
         const Vertex v = cdt.insert(Point(result.added[n][0], result.added[n][1]), hint);
         v->info() = static_cast<int>(section.point.size() + n);
