@@ -3,7 +3,9 @@
 
 #include "sim/cell_volume.h"
 #include "sim/flowed_volume.h"
+#include "skin/broken_skin.h"
 #include "skin/skin_volume.h"
+#include "skin/whole_parts.h"
 
 namespace swage {
 
@@ -35,6 +37,13 @@ std::optional<double> swollen_by(const WorkPiece& body) {
                                 is = enclosed_volume(body.skin, body.position);
     if (!was || !is || !(*was > 0)) return {};
     return *is / *was - present_volume(body.matter) / body.matter.volume();
+}
+
+std::optional<double> stretched_by(const WorkPiece& body, const BodyVolume& before) {
+    const std::optional<double> is = enclosed_volume(body.skin, body.position);
+    if (!is || !before.skin || !(*before.skin > 0) || is_broken(body.matter)) return {};
+    if (!spans_pieces(body.skin, body.mount, body.matter)) return {};
+    return *is / *before.skin - present_volume(body.matter) / before.matter;
 }
 
 }  // namespace swage

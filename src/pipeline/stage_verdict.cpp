@@ -215,6 +215,19 @@ std::string shrunk(const StageEnd& end, std::size_t body) {
                 : "try more frames or smaller cells");
 }
 
+// Nothing has flowed, a blade has parted the matter, and the skin takes up more or less than it
+// did.
+std::string stretched(const StageEnd& end, std::size_t b) {
+    if (end.totals.severed == 0 || end.last.plastic > 0) return {};
+    const double by = stretched_by(end.bodies[b], end.volumes_before[b]).value_or(0);
+    if (std::abs(by) <= kSwollen) return {};
+    return fmt::format(
+        "the skin of {} encloses {:.2g} % {} than before the cut: parts of it are stretched from "
+        "one piece to another; smaller cells or skin.kind = \"boundary\" avoid that",
+        end.bodies.size() == 1 ? "the work-piece" : end.bodies[b].name, 100 * std::abs(by),
+        by > 0 ? "more" : "less");
+}
+
 std::string how_to_close(Solver solver, const Books& last) {
     if (!in_motion(solver)) {
         const double by_loads = std::abs(last.load_work), by_weight = std::abs(last.gravity_work);
@@ -375,12 +388,12 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
                         "{:.3g} J less; {}",
                         taken, -end.last.remainder, how_to_close(sim.solver, end.last)));
     }
-    for (const WorkPiece& body : end.bodies) {
+    for (std::size_t b = 0; b < end.bodies.size(); ++b) {
         if (ended == StageEnded::interrupted) break;
-        if (const std::string told = swollen(end, body); !told.empty()) warn(told);
-    }
-    for (std::size_t b = 0; b < end.bodies.size() && ended != StageEnded::interrupted; ++b) {
-        if (const std::string told = shrunk(end, b); !told.empty()) warn(told);
+        for (const std::string& told :
+             {swollen(end, end.bodies[b]), stretched(end, b), shrunk(end, b)}) {
+            if (!told.empty()) warn(told);
+        }
     }
     if (may_lie_in_itself(end) && ended != StageEnded::interrupted) {
         for (WorkPiece& body : end.bodies) {

@@ -25,6 +25,7 @@
 #include "skin/broken_skin.h"
 #include "skin/divided_mesh.h"
 #include "skin/skin_volume.h"
+#include "skin/whole_parts.h"
 
 namespace swage {
 
@@ -391,6 +392,7 @@ bool keeps_volume(const WorkPiece& piece) {
 
 void hold_skin(WorkPiece& piece) {
     piece.is_parted = true;
+    if (!is_broken(piece.matter)) follow_one_piece(piece.skin, piece.mount, piece.matter);
     std::swap(piece.matter.particle_position, piece.followed);
     hold_insets(piece.inset, piece.matter);
     if (piece.whole_skin) {

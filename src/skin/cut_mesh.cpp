@@ -107,7 +107,11 @@ class PlaneCut {
     SurfaceSplit run() {
         const double a = matter_.lattice.spacing;
         SurfaceSplit split = split_surface(mesh_, position_, plane_, a);
-        if (split.seam_edges == 0) return split;
+        std::vector<int> own = sides_of_old(split);
+        if (split.seam_edges == 0) {
+            pass_by(std::move(own));
+            return split;
+        }
         const int old = static_cast<int>(mesh_.position.size());
         std::vector<BodyPlace> cut, inner;
         std::vector<double> share;
@@ -115,7 +119,6 @@ class PlaneCut {
         find_cut_places(split, cut, share, cut_world);
         find_cap_places(split, cut, inner);
 
-        std::vector<int> own = sides_of_old(split);
         own.resize(old + split.added.size(), 0);
         std::vector<Vec3> reference;
         std::vector<Vec3> world = position_;
@@ -152,7 +155,8 @@ class PlaneCut {
     }
 
   private:
-    // One that lies on the plane, or nearly, is with its triangles.
+    // One that lies on the plane, or nearly, is with its triangles. A part of the surface that is
+    // not cut is all on one side, however near the plane it lies; on both, as it likes.
     std::vector<int> sides_of_old(const SurfaceSplit& split) const {
         std::vector<char> above(position_.size(), 0), below(position_.size(), 0);
         for (const SplitTriangle& t : split.triangle) {
@@ -167,8 +171,39 @@ class PlaneCut {
             own.push_back(plane_.height(position_[v]) >= 0 ? 1 : -1);
             if (above[v] != below[v]) own[v] = above[v] ? 1 : -1;
         }
+        const Components parts = surface_components(mesh_);
+        std::vector<char> at_seam(mesh_.position.size(), 0);
+        for (const SplitVertex& vertex : split.at_seam) at_seam[vertex.raw] = 1;
+        std::vector<char> is_cut(parts.count, 0), over(parts.count, 0), under(parts.count, 0);
+        for (const SplitTriangle& t : split.triangle) {
+            if (t.parent < 0) continue;
+            const int part = parts.triangle_component[t.parent];
+            const Corners& c = mesh_.triangle[t.parent];
+            if (t.split || at_seam[c[0]] || at_seam[c[1]] || at_seam[c[2]]) is_cut[part] = 1;
+            if (t.side >= 0) over[part] = 1;
+            if (t.side <= 0) under[part] = 1;
+        }
+        for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
+            const int part = parts.triangle_component[t];
+            for (const int v : mesh_.triangle[t]) {
+                if (!is_cut[part]) own[v] = over[part] - under[part];
+            }
+        }
         for (const SplitVertex& vertex : split.at_seam) own[vertex.raw] = vertex.side;
         return own;
+    }
+
+    // The blade goes through a gap: it parts the matter of cells that reach across it, and what
+    // lies on either side of it is to follow its own.
+    void pass_by(std::vector<int> own) {
+        so_far_.plane.push_back({plane_, std::move(own)});
+        std::vector<Vec3> before;
+        skin_positions(mount_, matter_, before);
+        for (std::size_t v = 0; v < position_.size(); ++v) {
+            take_side(static_cast<int>(v), so_far_.plane.back(), position_[v]);
+        }
+        finish_mount(mount_, matter_);
+        hold_places(mount_, matter_, before);
     }
 
     // What is cut off thinner than the matter knows would hang in the air beside what is not of it:

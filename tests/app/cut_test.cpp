@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include "base/srgb.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
@@ -197,4 +199,64 @@ TEST_CASE("info calls what touches manifold by its numbers, and not by place") {
     CHECK(json.at("manifold_as_numbered") == true);
     CHECK(run_swage({"info", SWAGE_SOURCE_DIR "/assets/meshes/bar.obj"}).out.find("by place") ==
           std::string::npos);
+}
+
+namespace {
+
+// Boxes of `size` [m], their low corners at every `step` of it from 0 on.
+std::string boxes_obj(const swage::Vec3i& count, const swage::Vec3& size, const swage::Vec3& step) {
+    std::string vertex, face;
+    int first = 1;
+    for (int i = 0; i < count[0]; ++i)
+        for (int j = 0; j < count[1]; ++j)
+            for (int k = 0; k < count[2]; ++k, first += 8) {
+                const swage::Vec3 low = step.cwiseProduct(swage::Vec3(i, j, k));
+                for (int c = 0; c < 8; ++c) {
+                    const swage::Vec3 at =
+                        low + size.cwiseProduct(swage::Vec3(c & 1, c >> 1 & 1, c >> 2));
+                    vertex += fmt::format("v {} {} {}\n", at[0], at[1], at[2]);
+                }
+                for (const std::array<int, 4>& f : {std::array{0, 2, 3, 1},
+                                                    {4, 5, 7, 6},
+                                                    {0, 1, 5, 4},
+                                                    {2, 6, 7, 3},
+                                                    {0, 4, 6, 2},
+                                                    {1, 3, 7, 5}}) {
+                    face += fmt::format("f {} {} {} {}\n", f[0] + first, f[1] + first, f[2] + first,
+                                        f[3] + first);
+                }
+            }
+    return vertex + face;
+}
+
+}  // namespace
+
+TEST_CASE("slices of parts that cells join keep their shape, and each slice is an object") {
+    struct Case {
+        swage::Vec3i count;
+        swage::Vec3 size, step;
+        int across;
+    };
+    const Case one = GENERATE(Case{{1, 1, 3}, {.08, .08, .02}, {.08, .08, .03}, 4},
+                              Case{{1, 1, 3}, {.08, .08, .02}, {.08, .08, .031}, 8},
+                              Case{{5, 3, 3}, {.02, .02, .02}, {.03, .03, .03}, 4});
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "slices.toml", out = scratch.path() / "out";
+    put_text(scratch.path() / "parts.obj", boxes_obj(one.count, one.size, one.step));
+    put_text(scene, fmt::format("[mesh]\nfile = \"parts.obj\"\n[material]\nname = \"clay\"\n"
+                                "[mold]\nacross = {}\n[[stage]]\nmachine = \"slice\"\n"
+                                "slices = 3\naxis = \"z\"\nframes = 2\n",
+                                one.across));
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(outcome.err.find("before the cut") == std::string::npos);
+    const swage::TriMesh mesh = swage::read_mesh(out / "meshes/1-slice.obj");
+    const swage::Components parts = swage::surface_components(mesh);
+    REQUIRE(parts.count == one.count.prod());
+    for (const double volume : swage::component_volumes(mesh, parts)) {
+        CHECK(volume == Approx(one.size.prod()).epsilon(1e-4));
+    }
+    CHECK(mesh.part_name.size() == 3);
 }
