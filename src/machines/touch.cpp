@@ -36,6 +36,38 @@ double nearest_distance(const Shape& shape, const Pose& points_from_tool,
     return smallest;
 }
 
+namespace {
+
+constexpr int kHalvings = 60, kNarrowings = 100;
+
+// Where a straight way first comes as near as `gap` to a convex shape, whose distance along it
+// first falls and then rises: however thin the shape is. `room` is that distance less the gap.
+template <typename Room>
+std::optional<double> first_of_convex(const Room& room, double begin, double end) {
+    constexpr double kGolden = 0.6180339887498949;
+    double low = begin, high = end;
+    double at[2] = {high - kGolden * (high - low), low + kGolden * (high - low)};
+    double value[2] = {room(at[0]), room(at[1])};
+    for (int n = 0; n < kNarrowings && value[0] > 0 && value[1] > 0; ++n) {
+        const bool is_left = value[0] <= value[1];
+        (is_left ? high : low) = at[is_left ? 1 : 0];
+        at[is_left ? 1 : 0] = at[is_left ? 0 : 1], value[is_left ? 1 : 0] = value[is_left ? 0 : 1];
+        const int anew = is_left ? 0 : 1;
+        at[anew] = is_left ? high - kGolden * (high - low) : low + kGolden * (high - low);
+        value[anew] = room(at[anew]);
+    }
+    if (value[0] > 0 && value[1] > 0) return std::nullopt;
+    double free = begin, touching = at[value[0] <= 0 ? 0 : 1];
+    if (room(free) <= 0) return free;
+    for (int n = 0; n < kHalvings; ++n) {
+        const double middle = 0.5 * (free + touching);
+        (room(middle) > 0 ? free : touching) = middle;
+    }
+    return free;
+}
+
+}  // namespace
+
 std::optional<double> slide_to_touch(const Shape& shape, const Pose& points_from_tool,
                                      const Vec3& direction, const std::vector<Vec3>& points,
                                      double gap) {
@@ -65,6 +97,28 @@ std::optional<double> slide_to_touch(const Shape& shape, const Pose& points_from
         moved.translation += shift * direction;
         return nearest_distance(shape, moved, in_the_way) - gap;
     };
+    // Steps as long as these could go through it.
+    const double deepest = 0.5 * thinness_of(shape) + gap;
+    if (4 * deepest < kSmallestStep * size && !std::holds_alternative<MeshShape>(shape)) {
+        const auto first_of = [&](std::size_t from, std::size_t to) {
+            double first = std::numeric_limits<double>::infinity();
+            for (std::size_t p = from; p < to; ++p) {
+                const auto one_room = [&](double shift) {
+                    Pose moved = points_from_tool;
+                    moved.translation += shift * direction;
+                    return distance_to(shape, moved.inverse() * in_the_way[p]).value - gap;
+                };
+                first = std::min(first, first_of_convex(one_room, begin, end).value_or(first));
+            }
+            return first;
+        };
+        double first = std::numeric_limits<double>::infinity();
+        for (double one : parallel_parts(in_the_way.size(), kPointsPerChunk, first_of)) {
+            first = std::min(first, one);
+        }
+        if (first > end) return std::nullopt;
+        return first;
+    }
     double free = begin, touching = begin;
     while (touching <= end) {
         const double left = room(touching);

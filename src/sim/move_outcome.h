@@ -70,8 +70,9 @@ struct MoveOutcome : StepCounts {
     int let_be = 0;               // points of it that meet the work-piece no more, from now on
     double left_over = 0;  // of forces, at any rest from now on, where it is more than before [N]
     bool buckled = false;  // an equilibrium on the way was unstable, and left
-    std::vector<std::string> lost;  // tools that the work-piece has slipped away from
-    std::optional<LimitStop> stop;  // the move ended there, for a limit
+    std::vector<std::string> lost;     // tools that the work-piece has slipped away from
+    std::vector<std::string> pierced;  // tools that points of it have gone through
+    std::optional<LimitStop> stop;     // the move ended there, for a limit
 };
 
 // Work [J] that each tool and grip did while its pose went from one to another under these loads

@@ -9,17 +9,33 @@
 
 namespace swage {
 
+namespace {
+
+std::string all_of(const std::vector<std::string>& name) {
+    std::string names;
+    for (std::size_t n = 0; n < name.size(); ++n) {
+        if (n > 0) names += n + 1 == name.size() ? " and " : ", ";
+        names += name[n];
+    }
+    return names;
+}
+
+}  // namespace
+
 std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
     std::vector<std::string> warning;
     if (!outcome.lost.empty()) {
-        std::string names;
-        for (std::size_t n = 0; n < outcome.lost.size(); ++n) {
-            if (n > 0) names += n + 1 == outcome.lost.size() ? " and " : ", ";
-            names += outcome.lost[n];
-        }
         warning.emplace_back(fmt::format(
             "the work-piece slipped away from {}, or contracted, although no tool drew back",
-            names));
+            all_of(outcome.lost)));
+    }
+    if (!outcome.pierced.empty()) {
+        warning.emplace_back(fmt::format(
+            "parts of the work-piece's surface have gone through {} at once, by more "
+            "than a cell, and {} them no longer: raise frames or contact_stiffness, or "
+            "make {} thicker",
+            all_of(outcome.pierced), outcome.pierced.size() == 1 ? "it holds" : "these hold",
+            outcome.pierced.size() == 1 ? "it" : "them"));
     }
     if (outcome.afloat > 0) {
         const bool one = outcome.afloat == 1;

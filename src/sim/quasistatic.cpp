@@ -216,6 +216,12 @@ void QuasistaticSolver::keep(const StaticMove& move, bool buckled, MoveOutcome& 
     const RestingContacts::Stroke stroke = forces_.contacts.stroke(matter_, move.from, move.to);
     body.friction_work += stroke.friction;
     forces_.contacts.commit(matter_, move.to);
+    for (const int tool : forces_.contacts.take_pierced()) {
+        const std::string& name = apparatus_.tool[std::size_t(tool)].name;
+        if (std::ranges::find(outcome.pierced, name) == outcome.pierced.end()) {
+            outcome.pierced.push_back(name);
+        }
+    }
     std::vector<PartSum> load = forces_.contacts.loads(matter_, move.to);
     std::vector<double> work(load_.size(), 0.0);
     add_work(move.from, move.to, load_, load, work);

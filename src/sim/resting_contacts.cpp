@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "base/parallel.h"
 #include "laws/contact.h"
@@ -22,7 +23,8 @@ RestingContacts::RestingContacts(const Aggregate& matter, const Apparatus& appar
                                  const SimSettings& settings, int body)
     : apparatus_(&apparatus),
       pairs_(matter, apparatus, settings, body),
-      grips_(matter, apparatus, settings, body) {}
+      grips_(matter, apparatus, settings, body),
+      is_pierced_(apparatus.tool.size(), 0) {}
 
 void RestingContacts::connections_changed(const Aggregate& matter) {
     pairs_.connections_changed(matter);
@@ -169,12 +171,23 @@ double RestingContacts::commit(const Aggregate& matter, const Drive& now) {
         ToolPairs::Pair& pair = pairs_[n];
         ToolEntry entry;
         const Vec3 local = pairs_.local(pair, matter, now);
-        pair.come_out(-pairs_.distance_since_start(pair, local, entry).value);
+        const double depth = -pairs_.distance_since_start(pair, local, entry).value;
+        if (!touches[n] && pair.stuck && pairs_.is_beyond(pair, local)) is_pierced_[pair.tool] = 1;
+        pair.depth = touches[n] ? depth + pair.deep : 0;
+        pair.come_out(depth);
         pair.entry = touches[n] ? entry : ToolEntry{};
         pair.stuck = touches[n];
     }
     pairs_.forget_gone();
     return lost;
+}
+
+std::vector<int> RestingContacts::take_pierced() {
+    std::vector<int> tool;
+    for (std::size_t t = 0; t < is_pierced_.size(); ++t) {
+        if (std::exchange(is_pierced_[t], 0)) tool.push_back(static_cast<int>(t));
+    }
+    return tool;
 }
 
 std::string RestingContacts::hardest_point(const Aggregate& matter, const Drive& now) const {

@@ -55,6 +55,8 @@ class RestingContacts {
     // Remembers where each touching point sticks; forgets those that have left. Returns the work
     // that friction took on the way that they slipped [J].
     double commit(const Aggregate& matter, const Drive& now);
+    // The tools, by number, that points have gone through since this was last asked.
+    std::vector<int> take_pierced();
 
     // On the way from where the move began; to be asked before commit().
     struct Stroke {
@@ -106,6 +108,7 @@ class RestingContacts {
     const Apparatus* apparatus_;
     ToolPairs pairs_;
     GripSet grips_;
+    std::vector<char> is_pierced_;  // by tool
 };
 
 }  // namespace swage

@@ -24,4 +24,9 @@ struct EntryReach {
 Distance distance_by_entry(const Shape& shape, const EntryReach& reach, const Vec3& from,
                            const Vec3& now, ToolEntry& entry);
 
+// Whether a point that came in by `entry` is out on the far side of the tool, deeper than it is
+// held.
+bool is_beyond(const Shape& shape, const EntryReach& reach, const Vec3& now,
+               const ToolEntry& entry);
+
 }  // namespace swage

@@ -15,8 +15,9 @@ constexpr std::size_t kPointsPerChunk = 4096;
 // Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
 // grid, may change sqrt(3) times as fast as the place.
 constexpr double kSureShare = 0.5;
-// Spacings that a point beyond the middle of a tool may lie beside it, and how deep where nothing
-// has a speed: what is let go of there goes round tools and through them on its way to rest.
+// Spacings that a point beyond the middle of a tool may lie beside it, and how much deeper than it
+// did at rest where nothing has a speed: what is let go of there goes round tools and through them
+// on its way to rest, and no tool goes farther at once (increments_between()).
 constexpr double kBeside = 0.25, kDeepAtRest = 1;
 
 // The farthest that any corner of the tool's bounds moves.
@@ -168,11 +169,18 @@ Vec3 ToolPairs::anchor(const Pair& pair) const { return pair.stuck ? pair.anchor
 Distance ToolPairs::distance(const Pair& pair, const Vec3& from, const Vec3& now,
                              ToolEntry& entry) const {
     entry = pair.entry;
-    const EntryReach reach{kBeside * spacing_,
-                           in_motion(settings_.solver) ? kAnywhere : kDeepAtRest * spacing_};
-    Distance d = distance_by_entry(tool(pair).shape, reach, from, now, entry);
+    Distance d = distance_by_entry(tool(pair).shape, reach_of(pair), from, now, entry);
     d.value += pair.deep;
     return d;
+}
+
+EntryReach ToolPairs::reach_of(const Pair& pair) const {
+    return {kBeside * spacing_,
+            in_motion(settings_.solver) ? kAnywhere : kDeepAtRest * spacing_ + pair.depth};
+}
+
+bool ToolPairs::is_beyond(const Pair& pair, const Vec3& now) const {
+    return swage::is_beyond(tool(pair).shape, reach_of(pair), now, pair.entry);
 }
 
 Distance ToolPairs::distance_since_start(const Pair& pair, const Vec3& now,

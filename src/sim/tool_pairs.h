@@ -29,6 +29,7 @@ class ToolPairs {
         bool gone = false;            // its cell is no longer whole; until forget_gone()
         Vec3 anchor = Vec3::Zero();   // in the tool's frame
         ToolEntry entry{};            // where it touches
+        double depth = 0;             // in equilibria, likewise [m]
         double deep = 0;              // new surface came to be this deep, and goes no deeper [m]
         void come_out(double depth);  // depth: that counts [m]
     };
@@ -88,6 +89,8 @@ class ToolPairs {
     Vec3 anchor(const Pair& pair) const;
     Distance distance(const Pair& pair, const Vec3& from, const Vec3& now, ToolEntry& entry) const;
     Distance distance_since_start(const Pair& pair, const Vec3& now, ToolEntry& entry) const;
+    // Of one that touched, whether it is through the tool, too deep to be held by it.
+    bool is_beyond(const Pair& pair, const Vec3& now) const;
 
     // Adds to `stiffness` what the present pairs can add to each particle [N/m].
     void add_stiffness(std::vector<double>& stiffness) const;
@@ -108,6 +111,7 @@ class ToolPairs {
     void find_limits(const Aggregate& matter);
     double point_stiffness(std::size_t point, double tool_says) const;
     Vec3 start_of(const Pair& pair) const;  // of the move, in the tool's frame
+    EntryReach reach_of(const Pair& pair) const;
 
     const Apparatus* apparatus_;
     int body_;

@@ -86,3 +86,31 @@ TEST_CASE("a tool that passes by touches nothing") {
     CHECK(slide_to_touch(SphereShape{0.1}, {Quat::Identity(), {1.05, 0, 0}}, Vec3::UnitY(), points,
                          0));
 }
+
+TEST_CASE("however thin a tool is, it stops where a thick one does, or passes by") {
+    const std::vector<Vec3> points = box_points({-1, -0.2, -0.3}, {1, 0.2, 0.3}, {40, 8, 12});
+    const Quat aslant = turn_about(Vec3::UnitX(), 0.3);
+    for (const double thin : {1e-2, 1e-4, 1e-5, 1e-6, 1e-9}) {
+        CAPTURE(thin);
+        for (const double start : {-3.0, 0.2, 5.0}) {
+            const auto shift =
+                slide_to_touch(BoxShape{{3, thin, 3}, 0}, {Quat::Identity(), {0.1, start, 0}},
+                               -Vec3::UnitY(), points, 0);
+            REQUIRE(shift);
+            CHECK(start - *shift == Approx(0.2 + 0.5 * thin).margin(1e-8));
+        }
+        const auto by_edge = slide_to_touch(BoxShape{{3, thin, 3}, 0}, {aslant, {0.1, 5, 0}},
+                                            -Vec3::UnitY(), points, 0);
+        REQUIRE(by_edge);  // on an edge of the block
+        CHECK(5 - *by_edge ==
+              Approx(0.2 + 0.3 * std::tan(0.3) + 0.5 * thin / std::cos(0.3)).margin(1e-8));
+        // A wire over a row of points, and between two rows.
+        const auto over =
+            slide_to_touch(CylinderShape{0.5 * thin, 4}, {Quat::Identity(), {0.1, 5, 0}},
+                           -Vec3::UnitY(), points, 0);
+        REQUIRE(over);
+        CHECK(5 - *over == Approx(0.2 + 0.5 * thin).margin(1e-8));
+        CHECK_FALSE(slide_to_touch(CylinderShape{0.5 * thin, 4}, {Quat::Identity(), {0.125, 5, 0}},
+                                   -Vec3::UnitY(), points, 0));
+    }
+}

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "sim/advance.h"
+#include "sim/move_warnings.h"
+#include "sim/resting_contacts.h"
 #include "sim/tool_entry.h"
 #include "sim/vector_sums.h"
 #include "tests/catch.h"
@@ -53,14 +57,16 @@ Vec3Array struck(Solver solver, double thickness, double speed, bool plate_moves
     return block.particle_position;
 }
 
-// A block held at one end, whose other a plate presses in by 0.8 cells.
-Vec3Array pressed(double thickness, int frames) {
-    Aggregate block = make_block(8, 4, 4, kCell, kSpringy);
-    const Plate plate{thickness, -0.201, 0.041};
+// A block held at one end, whose other a plate presses in, by 0.8 cells if nothing else is said.
+Vec3Array pressed(double thickness, int frames, double by = 0.041, double stiffness = 0,
+                  int cells = 8) {
+    Aggregate block = make_block(cells, 4, 4, kCell, kSpringy);
+    const double half = 0.5 * kCell * cells;
+    const Plate plate{thickness, -half - 0.001, by};
     Apparatus apparatus = plate.apparatus();
     Grip hold;
     hold.name = "hold";
-    hold.point = points_where(block, [](const Vec3& x) { return x.x() > 0.1999; });
+    hold.point = points_where(block, [&](const Vec3& x) { return x.x() > half - 0.0001; });
     for (int p : hold.point) hold.anchor.push_back(block.surface_reference(p));
     apparatus.grip.push_back(hold);
     const auto at = [&](double time) {
@@ -68,9 +74,14 @@ Vec3Array pressed(double thickness, int frames) {
         d.world_from_grip.emplace_back();
         return d;
     };
-    Simulation simulation(block, apparatus, {});
+    SimSettings settings;
+    settings.contact_stiffness = stiffness;
+    Simulation simulation(block, apparatus, settings);
     for (int f = 0; f < frames; ++f) {
-        simulation.advance(at(double(f) / frames), at(double(f + 1) / frames));
+        const FrameReport report =
+            simulation.advance(at(double(f) / frames), at(double(f + 1) / frames));
+        CHECK(report.warning.empty());
+        CHECK(report.load[0].contacts > 0);
     }
     return block.particle_position;
 }
@@ -82,7 +93,7 @@ TEST_CASE("what meets a tool in motion does not go through, however thin the too
     const Solver solver = GENERATE(Solver::explicit_steps, Solver::energy_stepped);
     for (double speed : {10.0, 50.0}) {
         const Vec3Array by_thick = struck(solver, 0.2, speed, plate_moves);
-        for (double thickness : {0.02, 0.0002}) {
+        for (double thickness : {0.02, 0.0002, 1e-6, 1e-8}) {
             const Vec3Array by_thin = struck(solver, thickness, speed, plate_moves);
             CHECK(farthest_move(by_thick, by_thin) < 1e-4 * kCell);
         }
@@ -90,12 +101,58 @@ TEST_CASE("what meets a tool in motion does not go through, however thin the too
 }
 
 TEST_CASE("what a tool presses rests on it alike, however thin the tool and long its way at once") {
-    for (int frames : {2, 10}) {
+    for (int frames : {1, 2, 10}) {
         const Vec3Array by_thick = pressed(0.2, frames);
-        for (double thickness : {0.01, 0.001}) {
+        for (double thickness : {0.01, 0.001, 1e-5, 1e-7}) {
+            CAPTURE(frames, thickness);
             CHECK(farthest_move(by_thick, pressed(thickness, frames)) < 1e-6 * kCell);
         }
     }
+}
+
+TEST_CASE("what is pressed deeper than a cell into a tool is held by it, however thin it is") {
+    const double by = 0.14, soft = 0.5;
+    constexpr int kShort = 3;
+    for (int frames : {3, 12}) {
+        const Vec3Array by_thick = pressed(0.5, frames, by, soft, kShort);
+        // The first of its surface lies farther than a cell behind the plate's face.
+        const double first = *std::ranges::min_element(by_thick.x);
+        REQUIRE(-0.5 * kShort * kCell - 0.001 + by - first > 1.1 * kCell);
+        for (double thickness : {0.11, 0.02, 1e-6}) {
+            CAPTURE(frames, thickness);
+            CHECK(farthest_move(by_thick, pressed(thickness, frames, by, soft, kShort)) <
+                  1e-6 * kCell);
+        }
+    }
+}
+
+TEST_CASE("a tool that points have gone through at once is named, and one that they left is not") {
+    Aggregate block = make_block(4, 4, 4, kCell, kSpringy);
+    const Plate plate{1e-4, -0.09, 0};
+    const Apparatus apparatus = plate.apparatus();
+    const double way = GENERATE(-1.5 * kCell, -0.3 * kCell, 0.5 * kCell);
+    RestingContacts contacts(block, apparatus, {});
+    const Drive drive = plate.at(0);
+    // It came in by 0.01, then goes on by `way`.
+    const auto go = [&](double by) {
+        contacts.begin_move(block, drive);
+        for (double& x : block.particle_position.x) x += by;
+        contacts.find_candidates(block, drive);
+        contacts.commit(block, drive);
+    };
+    for (double& x : block.particle_position.x) x += 0.03;
+    go(-0.04);
+    REQUIRE(contacts.loads(block, drive)[0].contacts > 0);
+    CHECK(contacts.take_pierced().empty());
+    go(way);
+    const bool is_through = way < -kCell;
+    CHECK(contacts.take_pierced().size() == std::size_t(is_through));
+    CHECK(contacts.take_pierced().empty());
+    MoveOutcome outcome;
+    if (is_through) outcome.pierced.push_back("plate");
+    const std::vector<std::string> told = move_warnings(outcome);
+    REQUIRE(told.size() == std::size_t(is_through));
+    if (is_through) CHECK(told[0].find("gone through plate at once") != std::string::npos);
 }
 
 TEST_CASE("a point is held by the side of a tool that it came in by, until it has slid off it") {
@@ -121,6 +178,19 @@ TEST_CASE("a point is held by the side of a tool that it came in by, until it ha
     CHECK(at({0.02, 0.6, 0}, {-0.03, 0.6, 0}).value > 0);
     entry = {};
     CHECK(at({0.02, 0, 0}, {-0.2, 0, 0}).value > 0);  // too far
+    // However thin it is, and long the way: by the half that it came in by.
+    for (const double thin : {1e-3, 1e-5, 1e-7, 1e-9}) {
+        for (const double far : {0.5 * thin + 1e-12, 0.01, 5.0}) {
+            for (const double along : {0.0, 0.4}) {
+                CAPTURE(thin, far, along);
+                ToolEntry anew;
+                const Distance d = distance_by_entry(BoxShape{Vec3(thin, 1, 1), 0}, reach,
+                                                     {far, -along, 0}, {-0.03, along, 0}, anew);
+                CHECK(d.value == Approx(-0.03 - 0.5 * thin));
+                CHECK(d.normal == Vec3::UnitX());
+            }
+        }
+    }
     // From the left it is the other side.
     CHECK(at({-0.01, 0, 0}, {0.003, 0, 0}).value == Approx(-0.008));
 }
