@@ -8,6 +8,7 @@
 #include "base/bytes.h"
 #include "base/failure.h"
 #include "base/units.h"
+#include "pipeline/blade_entry.h"
 #include "pipeline/body_table.h"
 #include "pipeline/curves.h"
 #include "pipeline/limit_watch.h"
@@ -292,10 +293,23 @@ class StageRun {
     // same path, in its skin.
     void plan_cuts(Simulation& simulation, int number) {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            if (cuts_[b] || !simulation.blades_reach(b, way_.leg_ahead())) continue;
+            if (cuts_[b]) continue;
+            if (!simulation.blades_reach(b, way_.leg_ahead())) {
+                look_for_blades(b);
+                continue;
+            }
             cuts_[b] = 1;
             simulation.plan_cuts(b, way_.ahead(), way_.steps());
             cut_ahead(machine_, way_.ahead(), bodies_[b], number, warnings_);
+        }
+    }
+
+    // Where nothing is severed: whether there is matter that blades go into on this leg.
+    void look_for_blades(std::size_t b) {
+        if (!cuts_any() || totals_.entered > 0 || totals_.severed > 0) return;
+        const Aggregate& matter = bodies_[b].matter;
+        if (enters_matter(swept_triangles(machine_.apparatus, way_.leg_ahead()), matter)) {
+            totals_.entered = matter.lattice.spacing;
         }
     }
 

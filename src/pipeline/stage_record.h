@@ -25,6 +25,7 @@ struct StageTotals : StepCounts {
     double penetration = 0;  // [m]
     double stored = 0;       // at the end of any frame, the most [J]
     bool touched = false;    // by a tool: quasi-static at the end of a leg, in motion of any step
+    double entered = 0;      // spacing of what blades went into and severed nothing of; 0: nothing
 
     void add(const FrameReport& report, std::size_t tools) {
         count(report);

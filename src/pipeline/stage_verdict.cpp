@@ -7,13 +7,10 @@
 #include <utility>
 
 #include "base/text.h"
-#include "geometry/triangle_tree.h"
-#include "matter/cell_middle.h"
 #include "sim/flowed_volume.h"
 #include "sim/gripped_pieces.h"
 #include "sim/motion_guard.h"
 #include "sim/own_overlap.h"
-#include "sim/sever.h"
 #include "sim/static_forces.h"
 #include "sim/surface_modulus.h"
 
@@ -251,44 +248,15 @@ std::string how_to_close(Solver solver, const Books& last) {
            "contact_stiffness";
 }
 
-// All that the blades sweep, however few frames show of it.
-TriMesh swept_by_blades(const StageEnd& end) {
-    constexpr int kLooks = 256;
-    std::vector<Drive> way;
-    for (int n = 0; n <= kLooks; ++n) {
-        way.push_back(drive_at(end.machine, static_cast<double>(n) / kLooks, end.stage.duration));
-    }
-    TriMesh swept;
-    for (const std::array<Vec3, 3>& corner : swept_triangles(end.machine.apparatus, way)) {
-        if ((corner[1] - corner[0]).cross(corner[2] - corner[0]).isZero(0)) continue;
-        const int first = static_cast<int>(swept.position.size());
-        swept.position.insert(swept.position.end(), corner.begin(), corner.end());
-        swept.triangle.push_back({first, first + 1, first + 2});
-    }
-    return swept;
-}
-
 // Why no blade has severed anything: what goes through a cell may pass between its particles.
 std::string why_nothing_is_cut(const StageEnd& end) {
-    constexpr float kWhole = 0.99f;  // of a cell
-    const TriMesh swept = swept_by_blades(end);
-    if (!swept.triangle.empty()) {
-        const TriangleTree tree(swept);
-        for (const WorkPiece& body : end.bodies) {
-            const Aggregate& matter = body.matter;
-            const double a = matter.lattice.spacing;
-            for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
-                if (matter.cell_fill[c] < kWhole) continue;
-                if (tree.distance(cell_middle(matter, static_cast<CellId>(c))) > 0.5 * a) continue;
-                return fmt::format(
-                    "the blade went into matter but severed nothing: what is narrower than a cell, "
-                    "{}, or goes in by less than one, passes between particles; smaller cells or a "
-                    "wider blade avoid that",
-                    length_text(a));
-            }
-        }
+    if (end.totals.entered == 0) {
+        return "the blade met no matter: it passed beside the work-piece or through a gap in it";
     }
-    return "the blade met no matter: it passed beside the work-piece or through a gap in it";
+    return fmt::format(
+        "the blade went into matter but severed nothing: what is narrower than a cell, {}, or goes "
+        "in by less than one, passes between particles; smaller cells or a wider blade avoid that",
+        length_text(end.totals.entered));
 }
 
 // "a", "a and b", "a, b and c"; of more, the first.

@@ -58,6 +58,40 @@ TEST_CASE("a blade that passes between the particles of a cell is not said to ha
     CHECK(!says(told(""), "severed nothing"));
 }
 
+TEST_CASE("a blade is said to have gone into what was there when it passed, not what came later") {
+    // It falls beyond the bar's end; then the bar is drawn to where it was.
+    const auto told = [&](const char* place) {
+        const Scratch scratch;
+        fs::create_directory(scratch.path() / "machines");
+        put_text(scratch.path() / "machines/beside.toml",
+                 std::string("help = \"a blade beside what is drawn under it\"\n") +
+                     "[[grip]]\nname = \"hold\"\nfrom = [\"-length\", \"-height\", \"-width\"]\n"
+                     "to = [\"-0.4*length\", \"height\", \"width\"]\n"
+                     "[[grip]]\nname = \"draw\"\nfrom = [\"0.4*length\", \"-height\", \"-width\"]\n"
+                     "to = [\"length\", \"height\", \"width\"]\n[grip.motion]\n"
+                     "move = [\"0.2*length*ramp(t, 0.6, 1)\", 0, 0]\n[[blade]]\nname = \"blade\"\n"
+                     "edge = [[\"" +
+                     place + "\", \"2*height\", \"-0.02*width\"], [\"" + place +
+                     "\", \"2*height\", \"0.02*width\"]]\n[blade.motion]\n"
+                     "move = [0, \"-4*height*ramp(t, 0, 0.5)\", 0]\n");
+        swage::write_obj(scratch.path() / "body.obj", kBar);
+        put_text(scratch.path() / "scene.toml",
+                 "[mesh]\nfile = \"body.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 3\n"
+                 "[[stage]]\nmachine = \"beside\"\nframes = 4\n");
+        const Outcome outcome =
+            run_swage({"run", "scene.toml", "--out", "run", "--no-render"}, scratch.path());
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        return outcome.err;
+    };
+    for (const char* place : {"0.501*length", "0.55*length"}) {
+        CAPTURE(place);
+        CHECK(says(told(place), "the blade met no matter"));
+    }
+    // This one passes between the particles of what is there.
+    CHECK(says(told("0.11*length"), "the blade went into matter but severed nothing"));
+}
+
 TEST_CASE("blades that cut nothing, grips that hold nothing and pieces in no grip are told of") {
     const auto sliced = [](const char* slices, int across) {
         return told_of(

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/blade_entry.h"
+
+#include "geometry/triangle_tree.h"
+#include "matter/cell_middle.h"
+
+namespace swage {
+
+bool enters_matter(const std::vector<std::array<Vec3, 3>>& swept, const Aggregate& matter) {
+    constexpr float kWhole = 0.99f;  // of a cell
+    TriMesh mesh;
+    for (const std::array<Vec3, 3>& corner : swept) {
+        if ((corner[1] - corner[0]).cross(corner[2] - corner[0]).isZero(0)) continue;
+        const int first = static_cast<int>(mesh.position.size());
+        mesh.position.insert(mesh.position.end(), corner.begin(), corner.end());
+        mesh.triangle.push_back({first, first + 1, first + 2});
+    }
+    if (mesh.triangle.empty()) return false;
+    const double reach = 0.5 * matter.lattice.spacing;
+    const Box near = box_of(mesh.position).widened(reach);
+    const TriangleTree tree(mesh);
+    for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+        if (matter.cell_fill[c] < kWhole) continue;
+        const Vec3 middle = cell_middle(matter, static_cast<CellId>(c));
+        if (near.contains(middle) && tree.distance(middle) <= reach) return true;
+    }
+    return false;
+}
+
+}  // namespace swage
