@@ -116,8 +116,9 @@ struct SpringWay {
     N weight, over;  // c_b, 1 / d^2
 };
 
-// A cell as its connections lie, for strains of these.
-template <typename N>
+// A cell as its connections lie, for strains of these. Without bendings what is pressure is asked
+// of the cell as a whole alone, which takes half of the time.
+template <typename N, int kBent = kBendings>
 class SpringFrame {
   public:
     // `connection(b)` gives its SpringWay.
@@ -142,7 +143,7 @@ class SpringFrame {
                 of_one[i] += part;
             }
             const N* const r_of[3] = {&reach[b].x, &reach[b].y, &reach[b].z};
-            for (int h = 0; h < kBendings; ++h) {
+            for (int h = 0; h < kBent; ++h) {
                 const double bent = layout.bent[b][h];
                 if (bent == 0) continue;
                 for (int axis = 0; axis < 3; ++axis) {
@@ -176,7 +177,7 @@ class SpringFrame {
         for (std::size_t b = 0; b < weight_.size(); ++b) {
             N& pressed = pressure_[b] = 1.0 + N{};
             for (int i = 0; i < 5; ++i) pressed -= share[i] * along_[b][i];
-            for (int h = 0; h < kBendings; ++h) {
+            for (int h = 0; h < kBent; ++h) {
                 const int i = 5 + 3 * h;
                 const Triple<N> by = {share[i], share[i + 1], share[i + 2]};
                 pressed -= layout.bent[b][h] * dot(by, reach[b]);
@@ -240,7 +241,7 @@ class SpringFrame {
     }
 
   private:
-    static constexpr int kStill = 5 + 3 * kBendings;
+    static constexpr int kStill = 5 + 3 * kBent;
 
     SpringsOf<N> weight_;  // c_b
     SpringsOf<Traceless<N>> along_;
@@ -261,8 +262,8 @@ SWAGE_INLINE SpringFrame<N> frame_of(const CellSprings<N>& cell, const SpringLay
 // Halfway between rest, where `cell.strain` is none, and now. Along n_b, (1 - exp(-2 e)) / 2 is
 // n_b.A n_b of one A = (1 - exp(-2 H)) / 2 wherever a cell is strained alike, by H, however far.
 template <typename N>
-SWAGE_INLINE SpringFrame<N> halfway(const SpringFrame<N>& now, const CellSprings<N>& cell,
-                                    const SpringLayout& layout) {
+SWAGE_INLINE SpringFrame<N, 0> halfway(const SpringFrame<N>& now, const CellSprings<N>& cell,
+                                       const SpringLayout& layout) {
     SpringsOf<N> almansi;
     for (std::size_t b = 0; b < almansi.size(); ++b) {
         const N e = smaller(larger(cell.strain[b], -0.5 + N{}), 0.5 + N{});
@@ -272,7 +273,7 @@ SWAGE_INLINE SpringFrame<N> halfway(const SpringFrame<N>& now, const CellSprings
     const Symmetric<N> squared = square(a);
     const Symmetric<N> half =  // exp(-H/2)
         plus_unit(-0.5 * a - 0.375 * squared - 0.4375 * commuting(a, squared), 1.0);
-    return SpringFrame<N>(
+    return SpringFrame<N, 0>(
         layout, [&](std::size_t b) __attribute__((always_inline)) {
             const Triple<N> way = half * cell.way[b];
             const N e = 0.5 * smaller<N>(larger(cell.strain[b], -1.0 + N{}), 1.0 + N{});

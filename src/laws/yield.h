@@ -199,8 +199,8 @@ SWAGE_INLINE MaskOf<N> return_springs(const Yield& law, const CellSprings<N>& ce
     const MaskOf<N> flows = may & (q > flow_stress(law, alpha).stress);
     if (!is_any(flows)) return flows;
 
-    const SpringFrame<N> mid = halfway(now, cell, layout);
-    const typename SpringFrame<N>::Sums of_mid = mid.sums(cell.strain);
+    const SpringFrame<N, 0> mid = halfway(now, cell, layout);
+    const typename SpringFrame<N, 0>::Sums of_mid = mid.sums(cell.strain);
     const SpringDistortion<N> way =
         mid.distortion(mid.pressed(of_mid), mid.product_of(cell.strain, cell.strain),
                        product(of_mid.along, of_mid.mean), contract(of_mid.mean, of_mid.mean));
