@@ -58,8 +58,8 @@ class QuasistaticSolver {
     void connections_renewed();
 
     std::string met(const StaticMove& move);
-    [[noreturn]] void stop(const Relaxation& tried, const StaticMove& move,
-                           const std::string& met) const;
+    [[noreturn]] void stop(const Relaxation& tried, const StaticMove& move, const std::string& met);
+    std::string acts_at_once(const StaticMove& move);
 
     bool begin(const Drive& from, BodyOutcome& outcome);
     void let_go(const Drive& from, MoveOutcome& outcome);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "sim/quasistatic.h"
 #include "sim/vector_sums.h"
@@ -67,8 +68,39 @@ std::string QuasistaticSolver::met(const StaticMove& move) {
     return text;
 }
 
+// Of a stage that has found no rest yet: what acts from its first instant on matter that has borne
+// next to nothing, which no number of frames brings on more slowly, and what does. Empty: nothing.
+std::string QuasistaticSolver::acts_at_once(const StaticMove& move) {
+    constexpr double kNothing = 1e-6;  // of what a cell would store that bore it all
+    if (move.from.time > 0) return {};
+    double modulus = 0;
+    for (std::size_t m = 0; m < matter_.material_count(); ++m) {
+        modulus = std::max(modulus, matter_.material_at(m).young_modulus);
+    }
+    const double size = forces_.pushes.size(matter_, move.from);
+    const double stored = size * size / (2 * modulus * matter_.lattice.spacing);
+    if (elastic_energy() > kNothing * stored) return {};
+    std::vector<std::string> name, key;
+    if (!forces_.pushes.gravity(move.from).isZero(0)) {
+        name.emplace_back("gravity"), key.emplace_back("gravity_strength = \"t\"");
+    }
+    for (std::size_t n = 0; n < apparatus_.load.size(); ++n) {
+        if (move.from.load_strength[n] == 0) continue;
+        name.push_back(apparatus_.load[n].name);
+        if (key.empty() || key.back().starts_with("gravity")) {
+            key.emplace_back("strength = \"t\"");
+        }
+    }
+    if (name.empty()) return {};
+    return fmt::format(
+        "{} {} from the first instant on, however many frames there are: {} lets {} "
+        "grow over the stage",
+        joined(name, " and "), name.size() == 1 ? "acts" : "act", joined(key, " and "),
+        name.size() == 1 ? "it" : "them");
+}
+
 void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
-                             const std::string& met) const {
+                             const std::string& met) {
     if (tried.falls) {
         fail(ExitCode::stopped,
              "{}: the work-piece{} falls at {:.4g} s, as nothing holds it against gravity and "
@@ -76,14 +108,18 @@ void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
              "\"explicit\"",
              apparatus_.name, has_broken(matter_) ? ", which has broken," : "", move.to.time);
     }
-    const char* advice = "raise frames or tolerance of the stage";
-    if (tried.converged) {
-        advice = "a cell is crushed flat: raise [mold] across, or bend and twist less";
-    } else if (met.starts_with(kNoContact) &&
-               is_lifted(apparatus_, move.to, matter_.mass() * forces_.pushes.gravity(move.to))) {
+    std::string advice = "raise frames or tolerance of the stage";
+    const std::string at_once = acts_at_once(move);
+    if (!tried.converged && met.starts_with(kNoContact) &&
+        is_lifted(apparatus_, move.to, matter_.mass() * forces_.pushes.gravity(move.to))) {
         advice =
             "no tool touches it any more: the loads lift it off, as nothing holds it; hold it, "
             "lower them, or let it move with solver = \"explicit\"";
+    } else if (!at_once.empty()) {
+        advice = at_once;
+        if (matter_.yields()) advice += "; matter that flows under what it cannot bear needs less";
+    } else if (tried.converged) {
+        advice = "a cell is crushed flat: raise [mold] across, or bend and twist less";
     } else if (forces_.pushes.count() > 0 && matter_.yields()) {
         advice =
             "if the matter flows under loads that it cannot bear, lower these; otherwise raise "
@@ -93,7 +129,10 @@ void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
          "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings (residual "
          "{:.2g} of the largest push, required {:.2g}; {}); {}; {}",
          apparatus_.name, move.to.time, tried.iterations, move.depth, tried.residual,
-         settings_.tolerance, met, borne_last(apparatus_, move.from), advice);
+         settings_.tolerance, met,
+         at_once.empty() ? borne_last(apparatus_, move.from)
+                         : "it has not been at rest since the stage began",
+         advice);
 }
 
 }  // namespace swage

@@ -399,3 +399,51 @@ TEST_CASE("what patches leave over of loads takes nothing away where grips leave
         CHECK((matter.centre() - from).norm() < 0.05 * matter.lattice.spacing);
     }
 }
+
+TEST_CASE("where gravity or a load acts at once and there is no rest, the message says so") {
+    // A strip held at one end, which sags by far more than it is thick.
+    SimSettings settings;
+    settings.iteration_limit = 100;
+    settings.halving_limit = 0;
+    Material material = kSoft;
+    material.young_modulus = 1e3;
+    Aggregate matter = make_block(16, 1, 2, 0.05, material);
+    Apparatus apparatus;
+    apparatus.grip.push_back(
+        hold(matter, points_where(matter, [](const Vec3& x) { return x.x() < -0.399; })));
+    const auto end = points_where(matter, [](const Vec3& x) { return x.x() > 0.399; });
+    apparatus.load.push_back(force_on(matter, end, {0, -20, 0}));
+    struct Case {
+        double gravity, weight_at_start, load_at_start, load_at_end;
+    };
+    for (const auto& [gravity, weight, load, load_at_end] : {Case{9.81, 1, 0, 0},
+                                                             {9.81, 0, 0, 0},
+                                                             {0, 1, 1, 1},
+                                                             {0, 1, 0, 1},
+                                                             {9.81, 1, 1, 1},
+                                                             {9.81, 0, 1, 1}}) {
+        CAPTURE(gravity, weight, load, load_at_end);
+        settings.gravity = {0, -gravity, 0};
+        Aggregate strip = matter;
+        Simulation simulation(strip, apparatus, settings);
+        Drive from = still(0), to = still(1);
+        from.world_from_grip.emplace_back(), to.world_from_grip.emplace_back();
+        from.gravity_strength = weight;
+        from.load_strength = {load}, to.load_strength = {load_at_end};
+        std::string told;
+        try {
+            simulation.advance(from, to);
+        } catch (const Error& error) {
+            told = error.what();
+        }
+        INFO(told);
+        REQUIRE(told.find("no equilibrium found") != std::string::npos);
+        const auto says = [&](const char* words) { return told.find(words) != std::string::npos; };
+        const bool by_weight = gravity > 0 && weight > 0, by_load = load > 0;
+        CHECK(says("from the first instant on") == (by_weight || by_load));
+        CHECK(says("gravity_strength = \"t\"") == by_weight);
+        CHECK((says(" strength = \"t\"")) == by_load);
+        CHECK(says("gravity and push act ") == (by_weight && by_load));
+        CHECK(says("last at rest at 0 s") == !(by_weight || by_load));
+    }
+}
