@@ -30,11 +30,12 @@ constexpr int kTravelSamples = 64;  // of a blade's way, to see where it goes
 
 struct Setting {  // what every part of a machine is set up in
     const WorkFrame& frame;
-    double spacing;
+    double spacing;                         // of what the matter stands for
     double duration;                        // [s]
     std::vector<Vec3> point;                // the body's surface, in the work frame
     std::vector<Vec3> touch;                // what of it meets tools
     double apart;                           // these lie, at the most, about [m]
+    bool coarser;                           // than those of what it stands for
     Variables known;                        // grows with each tool
     std::vector<Variables> known_beside{};  // to the bodies beside it: what differs
 
@@ -167,8 +168,12 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     if (touch.norm() > 0) {
         const Vec3 direction = touch.normalized();
         const double gap = evaluate(spec.gap, setting.known, Quantity::length);
-        const std::optional<double> shift =
+        std::optional<double> shift =
             slide_to_touch(tool.shape, work_from_tool, direction, setting.touch, gap);
+        if (!shift && setting.coarser) {
+            shift = slide_to_touch(tool.shape, work_from_tool, direction, setting.touch,
+                                   gap + setting.apart);
+        }
         if (!shift)
             refuse(spec.touch[0], why_no_touch(setting, tool, work_from_tool, direction, gap));
         work_from_tool.translation += *shift * direction;
@@ -350,12 +355,12 @@ double lattice_reach(const Aggregate& matter, const WorkFrame& frame) {
 
 }  // namespace
 
-Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame) {
+Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame, double coarser) {
     return {{"length", frame.size.x()},
             {"height", frame.size.y()},
             {"width", frame.size.z()},
-            {"spacing", matter.lattice.spacing},
-            {"lattice_reach", lattice_reach(matter, frame)},
+            {"spacing", matter.lattice.spacing / coarser},
+            {"lattice_reach", lattice_reach(matter, frame) / coarser},
             {kMaterialFriction, matter.material.friction}};
 }
 
@@ -400,8 +405,8 @@ void place_parts(Machine& machine, Setting& setting, const Aggregate& matter) {
 
 Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double>& given,
                const WorkFrame& frame, const Aggregate& matter, const std::vector<Material>& beside,
-               double duration) {
-    Setting setting{frame, matter.lattice.spacing, duration, {}, {}, 0, {}};
+               double duration, double coarser) {
+    Setting setting{frame, matter.lattice.spacing / coarser, duration, {}, {}, 0, coarser > 1, {}};
     const Pose work_from_world = frame.world_from_work.inverse();
     for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
     const TouchPoints touch(matter);
@@ -411,7 +416,7 @@ Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double
                                 touch.points().position(std::size_t(p), matter.particle_position));
         setting.apart = std::max(setting.apart, std::sqrt(touch.points().area(std::size_t(p))));
     }
-    setting.known = work_piece_variables(matter, frame);
+    setting.known = work_piece_variables(matter, frame, coarser);
 
     Machine machine;
     machine.frame = frame;
@@ -437,7 +442,7 @@ Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double
     if (!spec.gravity_strength.empty()) {
         machine.gravity_strength.emplace(spec.gravity_strength, setting.timed(), Quantity::number);
     }
-    machine.notes = start_notes(machine, matter, setting.touch);
+    machine.notes = start_notes(machine, matter, setting.touch, setting.spacing);
     for (const CheckSpec& check : spec.check) {
         if (evaluate(check.holds, setting.known) == 0) machine.notes.push_back(check.otherwise);
     }
@@ -448,8 +453,9 @@ Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double
 
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
                       const WorkFrame& frame, const Aggregate& matter,
-                      const std::vector<Material>& beside, double duration) {
-    return naming(spec, [&] { return set_up(spec, given, frame, matter, beside, duration); });
+                      const std::vector<Material>& beside, double duration, double coarser) {
+    return naming(spec,
+                  [&] { return set_up(spec, given, frame, matter, beside, duration, coarser); });
 }
 
 }  // namespace swage

@@ -62,18 +62,21 @@ struct Machine {
 std::vector<std::optional<TurnAxis>> turn_axes(const Machine& machine);
 
 // What expressions know of the work-piece: length, height, width, spacing, lattice_reach and
-// material_friction.
-Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame);
+// material_friction. `coarser`: as for build_machine().
+Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame, double coarser = 1);
 
 // `given`: parameters by name, SI; the rest take defaults. Throws ParameterError, and PlacedError
 // naming machine and tool, grip or blade: an expression without a value that can be meant; a tool
 // that can never touch, or whose mesh cannot be read; a grip that holds nothing, a point that two
 // hold, or one that does not start at rest; a load on nothing.
 // `beside`: the materials of the bodies beside the work-piece, on which tools whose friction
-// follows from that of the material have another. `duration`: of the stage [s].
+// follows from that of the material have another. `duration`: of the stage [s]. `coarser`: the
+// spacing of the matter, over that of what it stands for: expressions and notes know the latter,
+// and no tool slips between points that are only farther apart for it.
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
                       const WorkFrame& frame, const Aggregate& matter,
-                      const std::vector<Material>& beside = {}, double duration = 1);
+                      const std::vector<Material>& beside = {}, double duration = 1,
+                      double coarser = 1);
 
 // Of each load, then gravity, at `t` (0 to 1). Throws as drive_at().
 std::vector<double> strengths_at(const Machine& machine, double t);

@@ -167,12 +167,12 @@ std::string clamped_note(const Load& load, const std::vector<Grip>& grips) {
 }  // namespace
 
 std::vector<std::string> start_notes(const Machine& machine, const Aggregate& matter,
-                                     const std::vector<Vec3>& touch) {
+                                     const std::vector<Vec3>& touch, double spacing) {
     std::vector<std::string> notes;
     const auto note = [&](std::string sentence) {
         if (!sentence.empty()) notes.push_back(std::move(sentence));
     };
-    const double slack = kOff * matter.lattice.spacing;
+    const double slack = kOff * spacing;
     std::vector<Vec3> inner;
     if (!machine.apparatus.tool.empty()) inner = whole_middles(machine, matter);
     std::vector<std::vector<Pose>> tool_way;
@@ -183,7 +183,7 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
     }
     for (std::string& clash : tool_clashes(machine, tool_way, slack)) note(std::move(clash));
     const double reach = 0.5 * machine.frame.size.norm();
-    const double jump = kJump * matter.lattice.spacing;
+    const double jump = kJump * spacing;
     const auto of_jumps = [&](const std::string& kind, const auto& part,
                               const std::vector<Motion>& motion,
                               const std::vector<Pose>& work_from_part) {
@@ -197,7 +197,7 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
     };
     const Apparatus& apparatus = machine.apparatus;
     for (std::size_t n = 0; only_blades_move(machine.spec) && n < apparatus.blade.size(); ++n) {
-        note(miss_note(machine, n, way_of(machine.blade_motion[n]), matter.lattice.spacing));
+        note(miss_note(machine, n, way_of(machine.blade_motion[n]), spacing));
     }
     for (const Load& load : apparatus.load) note(clamped_note(load, apparatus.grip));
     of_jumps("tool ", apparatus.tool, machine.tool_motion, machine.work_from_tool);

@@ -9,8 +9,9 @@
 
 namespace swage {
 
-// `touch`: what of the work-piece meets tools, in the work frame [m].
+// `touch`: what of the work-piece meets tools, in the work frame [m]. `spacing`: that is asked for;
+// the matter may be of a larger one [m].
 std::vector<std::string> start_notes(const Machine& machine, const Aggregate& matter,
-                                     const std::vector<Vec3>& touch);
+                                     const std::vector<Vec3>& touch, double spacing);
 
 }  // namespace swage

@@ -283,8 +283,9 @@ void count(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& 
     const std::vector<Material> beside = materials_beside(bodies);
     const Box skin = bodies.front().skin;
     const Aggregate& work_piece = made.matter.front();
-    const Machine machine = stage_machine(first, work_piece, beside, skin);
-    cost.place = machine_places(scene, machine, work_piece, beside, skin);
+    const double coarse = made.coarser.front();
+    const Machine machine = stage_machine(first, work_piece, beside, skin, coarse);
+    cost.place = machine_places(scene, machine, work_piece, beside, skin, coarse);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     for (std::string& amiss : tool_overlaps(machine, bodies, in_motion(first.sim.solver))) {
         cost.warning.bodies.push_back(std::move(amiss));
@@ -360,7 +361,8 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
             count(cost, scene, input, options, mold, coarser);
             return cost;
         } catch (const Error& error) {
-            // What a machine has against such different cells it has against any.
+            // Ranges and notes go by the cells that are asked for; what else a machine has against
+            // such different ones it has against any.
             if (is_whole || (again && error.code() == ExitCode::scene)) throw;
         }
     }

@@ -45,8 +45,8 @@ std::vector<NamedMatter> CountedMatter::named(const SceneSpec& scene,
         const BodySpec& body = scene.body[b];
         const bool is_mesh = scene.skin.kind != SkinKind::boundary;
         const TriMesh& shown = is_mesh ? input[b].mesh : input[b].to_mold();
-        named.push_back(
-            {body.name, &matter[b], box_at_start(body.start, input[b].to_mold(), shown)});
+        named.push_back({body.name, &matter[b], box_at_start(body.start, input[b].to_mold(), shown),
+                         coarser[b]});
     }
     return named;
 }

@@ -184,9 +184,10 @@ namespace {
 // As if the work-piece came to it as it is now; where it cannot be set up so, its frame alone,
 // unless there are loads. None: not even that.
 std::optional<Machine> later_machine(const StageSpec& stage, const Aggregate& work_piece,
-                                     const std::vector<Material>& beside, const Box& skin) {
+                                     const std::vector<Material>& beside, const Box& skin,
+                                     double coarser) {
     try {
-        return stage_machine(stage, work_piece, beside, skin);
+        return stage_machine(stage, work_piece, beside, skin, coarser);
     } catch (const Error&) {
     }
     if (!stage.machine.load.empty()) return std::nullopt;
@@ -203,12 +204,13 @@ std::optional<Machine> later_machine(const StageSpec& stage, const Aggregate& wo
 
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
                                          const Aggregate& work_piece,
-                                         const std::vector<Material>& beside, const Box& skin) {
+                                         const std::vector<Material>& beside, const Box& skin,
+                                         double coarser) {
     std::vector<MachinePlace> places;
     for (const StageSpec& stage : scene.stage) {
         std::optional<Machine> later;
         if (!places.empty()) {
-            later = later_machine(stage, work_piece, beside, skin);
+            later = later_machine(stage, work_piece, beside, skin, coarser);
         }
         const Machine* machine = places.empty() ? &first : later ? &*later : nullptr;
         MachinePlace& place = places.emplace_back();

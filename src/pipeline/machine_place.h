@@ -41,10 +41,11 @@ struct MachinePlace {
 // empty: not all from one side, or none.
 std::string tools_text(const StageSpec& stage, const WorkFrame& frame);
 
-// Of all stages. `first`: the machine of the first.
+// Of all stages. `first`: the machine of the first. `coarser`: as build_machine() has it.
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
                                          const Aggregate& work_piece,
-                                         const std::vector<Material>& beside, const Box& skin);
+                                         const std::vector<Material>& beside, const Box& skin,
+                                         double coarser = 1);
 
 // What the machines of all stages but the first say of the work-piece as it is now, each sentence
 // once, with its stages.

@@ -13,7 +13,8 @@ namespace swage {
 struct NamedMatter {
     std::string name;
     const Aggregate* matter;
-    Box skin{};  // of its skin, as place_work_frame() has it
+    Box skin{};          // of its skin, as place_work_frame() has it
+    double coarser = 1;  // as build_machine() has it
 };
 
 // Of all but the work-piece.

@@ -59,20 +59,21 @@ WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece, const
 }
 
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
-                      const std::vector<Material>& beside, const Box& skin) {
+                      const std::vector<Material>& beside, const Box& skin, double coarser) {
     return at_stage(stage, [&] {
         return build_machine(stage.machine, stage.parameter, stage_frame(stage, work_piece, skin),
-                             work_piece, beside, stage.duration);
+                             work_piece, beside, stage.duration, coarser);
     });
 }
 
 std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
-                                           const Box& skin, const std::vector<Material>& beside) {
+                                           const Box& skin, const std::vector<Material>& beside,
+                                           double coarser) {
     std::vector<std::string> mistakes;
     for (std::size_t n = 1; n < scene.stage.size(); ++n) {
         const StageSpec& stage = scene.stage[n];
         try {
-            stage_machine(stage, work_piece, beside, skin);
+            stage_machine(stage, work_piece, beside, skin, coarser);
         } catch (const SceneError& error) {
             for (const Mistake& mistake : error.mistakes()) {
                 std::string text = mistake_text(mistake);

@@ -13,14 +13,15 @@ namespace swage {
 WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece, const Box& skin);
 
 // A stage's machine, set up at the work-piece as it is now. `beside`: the materials of the other
-// bodies. Throws SceneError where build_machine throws.
+// bodies. `coarser`: as build_machine() has it. Throws SceneError where that throws.
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
-                      const std::vector<Material>& beside, const Box& skin);
+                      const std::vector<Material>& beside, const Box& skin, double coarser = 1);
 
 // What keeps the machines of all stages but the first from being set up at the work-piece as it is
 // before the first; at that of then they may be.
 std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
-                                           const Box& skin, const std::vector<Material>& beside);
+                                           const Box& skin, const std::vector<Material>& beside,
+                                           double coarser = 1);
 
 // Takes out what has been foreseen of a stage, which has been set up by now.
 void forget_foreseen(std::vector<std::string>& warnings, const StageSpec& stage);

@@ -130,7 +130,8 @@ std::vector<std::string> doubts_of_start(const SceneSpec& scene,
     const Aggregate& matter = *bodies.front().matter;
     std::string doubt;
     try {
-        const Machine machine = stage_machine(stage, matter, {}, bodies.front().skin);
+        const Machine machine =
+            stage_machine(stage, matter, {}, bodies.front().skin, bodies.front().coarser);
         doubt = flies ? flight_doubt(stage, scene.work_piece(), machine, matter)
                       : lift_doubt(stage, machine, matter);
     } catch (const Error&) {  // the stage tells that itself

@@ -65,8 +65,9 @@ std::vector<NamedMatter> named(const std::vector<WorkPiece>& bodies) {
 std::vector<std::string> warnings_of_bodies(const SceneSpec& scene,
                                             const std::vector<NamedMatter>& bodies) {
     std::vector<std::string> told = start_overlaps(bodies);
-    const std::vector<std::string> mistakes = foreseen_mistakes(
-        scene, *bodies.front().matter, bodies.front().skin, materials_beside(bodies));
+    const std::vector<std::string> mistakes =
+        foreseen_mistakes(scene, *bodies.front().matter, bodies.front().skin,
+                          materials_beside(bodies), bodies.front().coarser);
     told.insert(told.end(), mistakes.begin(), mistakes.end());
     for (std::string& doubt : doubts_of_start(scene, bodies)) told.push_back(std::move(doubt));
     return told;

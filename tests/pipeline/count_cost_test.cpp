@@ -85,6 +85,43 @@ TEST_CASE("what larger cells tell of a run is what its own would, and all that i
     }
 }
 
+TEST_CASE("a machine is judged by the cells that are asked for where larger ones are counted") {
+    // A radius of 0.26 cells, which points of larger cells pass by on both sides.
+    CountedScene needle("bar", "rubber",
+                        "\"shelf\"\nradius = \"0.025 mm\"\ngravity = \"9.81 m/s2\"\n");
+    needle.input[0].mesh = box_mesh({0, 0, 0}, {1, 0.002, 0.002});
+    for (const double most : {kFew, 3 * kFew, 10 * kFew}) {
+        RunCost told;
+        CHECK_NOTHROW(told = needle.cost(21, most));
+        CHECK(told.place.size() == 1);
+        std::string sentence;
+        try {
+            needle.cost(19, most);
+        } catch (const Error& error) {
+            sentence = error.what();
+        }
+        CHECK(sentence.find("radius = 25 um is out of range: it must be 26.31") !=
+              std::string::npos);
+    }
+    // Half a slice is 0.6 cells, or 0.43. What stages after the first say, too.
+    const std::string slice = "\"slice\"\nslices = ", again = "\n[[stage]]\nmachine = ";
+    for (const auto& [slices, notes] : {std::pair("10", 0), std::pair("14", 1)}) {
+        CountedScene ball("sphere", "rubber", slice + slices + again + slice + slices);
+        const RunCost whole = ball.cost(24, kAll), told = ball.cost(24, kFew);
+        INFO(slices);
+        CHECK(whole.counted);
+        CHECK_FALSE(told.counted);
+        CHECK(int(told.note.size()) == notes);
+        CHECK(told.note == whole.note);
+        REQUIRE(told.place.size() == 2);
+        CHECK(told.place[1].note == whole.place[1].note);
+    }
+    // What is out of range of a later one is foreseen by them.
+    CountedScene later("sphere", "rubber", slice + "2" + again + "\"wring\"\nsqueeze = \"3 mm\"\n");
+    CHECK(later.cost(24, kFew).warning.bodies == later.cost(24, kAll).warning.bodies);
+    CHECK(later.cost(24, kFew).warning.bodies.size() == 1);
+}
+
 TEST_CASE("nothing that is told of a run drops, or leaps, where its cells get too many to count") {
     for (const auto& [material, stage] :
          {std::pair("steel_4340", kBend), std::pair("rubber", kFloor)}) {
