@@ -5,12 +5,14 @@
 
 #include "geometry/make_shape.h"
 #include "machines/legs.h"
+#include "machines/parameters.h"
 #include "machines/touch.h"
 #include "mold/mold.h"
 #include "scene/read_machine.h"
 #include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/machines/bodies.h"
+#include "tests/shared/block.h"
 
 using namespace swage;
 
@@ -72,6 +74,55 @@ TEST_CASE("every shipped machine's defaults suit a cube of few cells and of many
                 at_bar(entry.path().stem().string(), {}, body_of(points, 1 / cells));
             for (const std::string& note : machine.notes) {
                 CHECK(note.find("overlap") == std::string::npos);
+            }
+        }
+    }
+}
+
+TEST_CASE("every shipped machine stands with its defaults at boxes of any proportions") {
+    const auto along = [](int axis, double longer, double shorter, bool flat) {
+        Vec3 size = Vec3::Constant(flat ? longer : shorter);
+        size[axis] = flat ? shorter : longer;
+        return size;
+    };
+    std::vector<std::pair<std::string, Aggregate>> bodies;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const int layers : {1, 2}) {
+            const auto cells = [&](double longer, bool flat) {
+                const Vec3 n = along(axis, longer, layers, flat);
+                bodies.emplace_back(
+                    fmt::format("{} by {} by {} cells", n.x(), n.y(), n.z()),
+                    test::make_block(int(n.x()), int(n.y()), int(n.z()), 0.01, Material{}));
+            };
+            cells(16, true);
+            cells(120, false);
+        }
+        // Thinner than its cells.
+        for (const bool flat : {true, false}) {
+            const Vec3 half = along(axis, 0.5, 0.001, flat);
+            const Vec3i divisions = along(axis, flat ? 40 : 100, 8, flat).cast<int>();
+            bodies.emplace_back(fmt::format("thin {} along {}", flat ? "sheet" : "needle", axis),
+                                body_of(box_points(-half, half, divisions), flat ? 0.05 : 0.02));
+        }
+    }
+    const WorldAxis axes[] = {WorldAxis::x, WorldAxis::y, WorldAxis::z};
+    for (const auto& entry : std::filesystem::directory_iterator(kMachines)) {
+        const MachineSpec spec = shipped(entry.path().stem().string());
+        for (const auto& [name, body] : bodies) {
+            for (const WorldAxis axis : axes) {
+                for (const WorldAxis up : axes) {
+                    if (up == axis) continue;
+                    INFO(spec.name << " at " << name << ", axis " << name_of(axis) << ", up "
+                                   << name_of(up));
+                    const WorkFrame frame = place_work_frame(body, axis, up);
+                    // Jaws that are narrower than a cell pass between its points.
+                    if (spec.name == "wring" && frame.size.x() < 3 * body.lattice.spacing) {
+                        CHECK_NOTHROW(
+                            resolve_parameters(spec, {}, work_piece_variables(body, frame)));
+                        continue;
+                    }
+                    CHECK_NOTHROW(build_machine(spec, {}, frame, body));
+                }
             }
         }
     }
