@@ -23,6 +23,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kMostTold = 4;  // of a load's parts
+constexpr int kLooks = 256;           // at strengths, over the stage
 
 Vec3 in_machine(const WorkFrame& frame, const Vec3& in_world) {
     return frame.world_from_work.inverse() * in_world;
@@ -63,6 +64,30 @@ Vec3 whole_force(const Load& load) {
     return sum;
 }
 
+struct StrengthRange {
+    double least = 1, most = 1;
+
+    double full() const { return -least > most ? least : most; }  // that acts the most
+    double other() const { return -least > most ? most : least; }
+};
+
+// Of each load over the stage; 1 where an expression has no value at some time, which others tell.
+std::vector<StrengthRange> strengths_of(const Machine& machine) {
+    std::vector<StrengthRange> all(machine.load_strength.size());
+    try {
+        for (int n = 0; n <= kLooks; ++n) {
+            const std::vector<double> now = strengths_at(machine, double(n) / kLooks);
+            for (std::size_t l = 0; l < all.size(); ++l) {
+                all[l].least = n == 0 ? now[l] : std::min(all[l].least, now[l]);
+                all[l].most = n == 0 ? now[l] : std::max(all[l].most, now[l]);
+            }
+        }
+    } catch (const Error&) {
+        std::fill(all.begin(), all.end(), StrengthRange{});
+    }
+    return all;
+}
+
 }  // namespace
 
 std::string axes_text(const WorkFrame& frame) {
@@ -98,15 +123,19 @@ std::vector<std::string> load_texts(const Machine& machine) {
 
 Json loads_json(const Machine& machine) {
     Json json = Json::array();
+    const std::vector<StrengthRange> strength = strengths_of(machine);
     for (std::size_t n = 0; n < machine.load_on.size(); ++n) {
+        const double full = strength[n].full();
         const Load& pushes = machine.apparatus.load[n];
         Json load = {{"name", pushes.name}};
         if (pushes.force.empty()) {
-            load["pressure_Pa"] = pushes.pressure;
+            load["pressure_Pa"] = full * pushes.pressure;
         } else {
-            const Vec3 force = whole_force(pushes);
+            const Vec3 force = full * whole_force(pushes);
             load["force_N"] = {force[0], force[1], force[2]};
         }
+        load["strength_least"] = strength[n].least;
+        load["strength_most"] = strength[n].most;
         load.update(part_json(machine.frame, whole_of(machine.load_on[n])));
         load["parts"] = Json::array();
         for (const SurfaceComponent& part : machine.load_on[n]) {
@@ -119,17 +148,31 @@ Json loads_json(const Machine& machine) {
 
 std::vector<std::string> push_texts(const Machine& machine) {
     std::vector<std::string> texts;
-    for (const Load& load : machine.apparatus.load) {
-        const Vec3 force = whole_force(load);
-        if (load.force.empty()) {
-            texts.push_back(
-                fmt::format("{} {} with {}", load.name, load.pressure < 0 ? "sucks" : "presses",
-                            rounded_text(std::abs(load.pressure), Quantity::stress, 4)));
-        } else if (force.norm() > 0) {
-            texts.push_back(fmt::format("{} pushes with {} along the world's {}", load.name,
-                                        rounded_text(force.norm(), Quantity::force, 4),
-                                        way_text(force.normalized())));
+    const std::vector<StrengthRange> strength = strengths_of(machine);
+    for (std::size_t n = 0; n < strength.size(); ++n) {
+        const Load& load = machine.apparatus.load[n];
+        const bool is_force = !load.force.empty();
+        const Vec3 unit_force = whole_force(load);
+        const double unit = is_force ? unit_force.norm() : std::abs(load.pressure);
+        const double full = strength[n].full(), other = strength[n].other();
+        if (full * unit == 0) continue;
+        const auto size = [&](double at) {
+            return (full == other ? "" : "up to ") +
+                   rounded_text(std::abs(at) * unit, is_force ? Quantity::force : Quantity::stress,
+                                4);
+        };
+        const auto verb = [&](double at) { return at * load.pressure < 0 ? "sucks" : "presses"; };
+        const bool changes = full * other < 0;
+        std::string text = load.name + " ";
+        if (is_force) {
+            text += fmt::format("pushes with {} along the world's {}", size(full),
+                                way_text((full * unit_force).normalized()));
+            if (changes) text += fmt::format(", and {} the other way", size(other));
+        } else {
+            text += fmt::format("{} with {}", verb(full), size(full));
+            if (changes) text += fmt::format(", and {} with {}", verb(other), size(other));
         }
+        texts.push_back(text);
     }
     return texts;
 }

@@ -19,8 +19,8 @@ Json axes_json(const WorkFrame& frame);  // ["y", "z", "x"]
 // axes from the middle of the work-piece's box, as the load's own `from` and `to`; in JSON by the
 // world's too.
 std::vector<std::string> load_texts(const Machine& machine);
-Json loads_json(const Machine& machine);  // and what they push with at full strength
-// For each load what it pushes with at full strength, and which way in the world.
+Json loads_json(const Machine& machine);  // and what they push with where they act the most
+// For each load what it pushes with where its strength is the most, and which way in the world.
 std::vector<std::string> push_texts(const Machine& machine);
 
 // Of a stage before the run; of any but the first, as if the work-piece came to it as it is now.

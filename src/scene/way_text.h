@@ -10,13 +10,14 @@
 
 namespace swage {
 
-// "-z" along an axis, else "[0.6, 0.8, 0]". `way`: unit.
+// "-z" along an axis, else "[0.6, 0.8, 0]", to a thousandth. `way`: unit.
 inline std::string way_text(const Vec3& way) {
     for (int n = 1; n <= 6; ++n) {
         const auto axis = static_cast<WorldAxis>(n);
         if (direction_of(axis).dot(way) > 1 - 1e-6) return name_of(axis);
     }
-    return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", way.x(), way.y(), way.z());
+    const Vec3 told = (1e3 * way).array().round() / 1e3 + 0.0;  // without a sign of 0
+    return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", told.x(), told.y(), told.z());
 }
 
 }  // namespace swage

@@ -50,6 +50,65 @@ TEST_CASE(
     CHECK(axes_text(stage_frame(scene.stage[0], along_x, Box{})) == "");
 }
 
+TEST_CASE("what a load pushes with is told at the strength that acts, and which way") {
+    const test::SceneFolder scratch;
+    const Aggregate bar = test::make_block(16, 4, 4, 0.1, Material{});
+    const auto told = [&](const std::string& load) {
+        const SceneReading reading = read_scene(
+            scratch.write("s.toml",
+                          "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
+                          "[[stage]]\nmachine = \"hold\"\n[[stage.load]]\non = \"right\"\n" +
+                              load),
+            {}, test::shipped());
+        REQUIRE(reading.scene);
+        const Machine machine = stage_machine(reading.scene->stage[0], bar, {}, Box{});
+        const std::vector<MachinePlace> places =
+            machine_places(*reading.scene, machine, bar, {}, Box{});
+        const std::vector<std::string>& push = places.at(0).push;
+        REQUIRE(push.size() <= 1);
+        return std::pair(push.empty() ? "" : push[0], Json(places[0].loads_json.at(0)));
+    };
+    const auto check = [&](const std::string& load, const std::string& text, const char* key,
+                           const Json& value, double least, double most) {
+        INFO(load);
+        const auto [push, json] = told(load);
+        CHECK(push == text);
+        if (json.at(key).is_array()) {
+            for (int k = 0; k < 3; ++k) {
+                const double wanted = value[k].get<double>();
+                CHECK(json.at(key)[k].get<double>() == Approx(wanted).margin(1e-9));
+            }
+        } else {
+            CHECK(json.at(key) == value);
+        }
+        CHECK(json.at("strength_least") == least);
+        CHECK(json.at("strength_most") == most);
+    };
+    const std::string force = "force = [0, \"100 N\", 0]\n", with = "load_1 pushes with ";
+    const auto up = [](double newtons) { return Json::array({0.0, newtons, 0.0}); };
+    check(force, with + "up to 100 N along the world's y", "force_N", up(100), 0, 1);
+    check(force + "strength = 1\n", with + "100 N along the world's y", "force_N", up(100), 1, 1);
+    check(force + "strength = 2\n", with + "200 N along the world's y", "force_N", up(200), 2, 2);
+    check(force + "strength = \"-5*t\"\n", with + "up to 500 N along the world's -y", "force_N",
+          up(-500), -5, 0);
+    check(force + "strength = \"t\"\n", with + "up to 100 N along the world's y", "force_N",
+          up(100), 0, 1);
+    check(force + "strength = \"1 - 3*t\"\n",
+          with + "up to 200 N along the world's -y, and up to 100 N the other way", "force_N",
+          up(-200), -2, 1);
+    check(force + "strength = \"0*t\"\n", "", "force_N", up(0), 0, 0);
+    const std::string pressure = "pressure = \"1 kPa\"\n";
+    check(pressure + "strength = 1\n", "load_1 presses with 1 kPa", "pressure_Pa", 1000.0, 1, 1);
+    check(pressure + "strength = \"-t\"\n", "load_1 sucks with up to 1 kPa", "pressure_Pa", -1000.0,
+          -1, 0);
+    check("pressure = \"-1 kPa\"\nstrength = \"4*t - 1\"\n",
+          "load_1 sucks with up to 3 kPa, and presses with up to 1 kPa", "pressure_Pa", -3000.0, -1,
+          3);
+    // To a thousandth of a unit vector, without what is rounded of 0.
+    CHECK(told("force = [\"0.0001 N\", \"-10 N\", \"0.1 N\"]\n").first ==
+          with + "up to 10 N along the world's [0, -1, 0.01]");
+}
+
 TEST_CASE("it is told from which side of the world tools come, and what brings them from above") {
     const test::SceneFolder scratch;
     const auto told = [&](const std::string& stage, const Aggregate& block) {
