@@ -369,10 +369,12 @@ double explicit_steps_per_second(const Aggregate& matter, const SimSettings& set
 
 long equilibria_along(const Aggregate& matter, const Apparatus& apparatus,
                       const SimSettings& settings, const std::vector<Drive>& drives) {
+    constexpr std::size_t kEnough = 4096;  // points: with thousands of drives all are too many
+    const std::size_t every = 1 + matter.surface.size() / kEnough;
     const RestingContacts contacts(matter, apparatus, settings);
     long count = 0;
     for (std::size_t n = 1; n < drives.size(); ++n) {
-        count += increments_between(contacts, matter, drives[n - 1], drives[n]);
+        count += increments_between(contacts, matter, drives[n - 1], drives[n], every);
     }
     return count;
 }

@@ -15,8 +15,8 @@ constexpr double kLikewise = 0.1;  // cosine of two motions
 }  // namespace
 
 int increments_between(const RestingContacts& contacts, const Aggregate& matter, const Drive& from,
-                       const Drive& to) {
-    const double travel = contacts.travel(matter, from, to);
+                       const Drive& to, std::size_t every) {
+    const double travel = contacts.travel(matter, from, to, every);
     return std::max(1, static_cast<int>(std::ceil(travel / matter.lattice.spacing)));
 }
 

@@ -12,8 +12,9 @@
 namespace swage {
 
 // The moves in which a drive's way is solved: none takes a tool or grip farther than one spacing.
+// `every`: as ToolPairs has it.
 int increments_between(const RestingContacts& contacts, const Aggregate& matter, const Drive& from,
-                       const Drive& to);
+                       const Drive& to, std::size_t every = 1);
 
 // Six numbers for each tool, then each grip: its way, and its turn times `size` [m]. Then one for
 // each load and for gravity: how much stronger it becomes, times `size`.

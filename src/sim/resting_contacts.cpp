@@ -36,8 +36,9 @@ void RestingContacts::add_stiffness(const Aggregate& matter, std::vector<double>
     grips_.add_stiffness(matter, stiffness);
 }
 
-double RestingContacts::travel(const Aggregate& matter, const Drive& from, const Drive& to) const {
-    return std::max(pairs_.travel(matter, from, to), grips_.travel(from, to));
+double RestingContacts::travel(const Aggregate& matter, const Drive& from, const Drive& to,
+                               std::size_t every) const {
+    return std::max(pairs_.travel(matter, from, to, every), grips_.travel(from, to));
 }
 
 double RestingContacts::near_travel(const Drive& from, const Drive& to) const {

@@ -70,7 +70,9 @@ class RestingContacts {
     double air(const Aggregate& matter, const Drive& from, const Drive& to) const;
 
     // The farthest that the surface of any tool near the body, or any gripped point, moves [m].
-    double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
+    // `every`: as ToolPairs has it.
+    double travel(const Aggregate& matter, const Drive& from, const Drive& to,
+                  std::size_t every = 1) const;
     // The farthest that any grip, or tool that was near when the candidates were found, moves [m].
     double near_travel(const Drive& from, const Drive& to) const;
     // Whether that is no more than how poses on the way from a pose to the same one are rounded.

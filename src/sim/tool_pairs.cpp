@@ -201,7 +201,8 @@ void ToolPairs::forget_gone() {
     pair_.erase(pair_.begin() + std::ptrdiff_t(kept), pair_.end());
 }
 
-double ToolPairs::travel(const Aggregate& matter, const Drive& from, const Drive& to) const {
+double ToolPairs::travel(const Aggregate& matter, const Drive& from, const Drive& to,
+                         std::size_t every) const {
     double farthest = 0;
     for (std::size_t t = 0; t < apparatus_->tool.size(); ++t) {
         const Tool& tool = apparatus_->tool[t];
@@ -211,7 +212,7 @@ double ToolPairs::travel(const Aggregate& matter, const Drive& from, const Drive
             continue;
         }
         const Pose tool_from_world = from.world_from_tool[t].inverse();
-        for (std::size_t p = 0; p < points().size(); ++p) {
+        for (std::size_t p = 0; p < points().size(); p += every) {
             if (!touch_->meets(int(p))) continue;
             const Vec3 x = points().position(std::size_t(p), matter.particle_position);
             const Vec3 local = tool_from_world * x;

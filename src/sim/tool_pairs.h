@@ -96,8 +96,9 @@ class ToolPairs {
     void add_stiffness(std::vector<double>& stiffness) const;
 
     // The farthest that the surface of any tool near the body moves; or any tool that was near when
-    // the candidates were found [m].
-    double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
+    // the candidates were found [m]. `every`: so many points are judged by one, for estimates.
+    double travel(const Aggregate& matter, const Drive& from, const Drive& to,
+                  std::size_t every = 1) const;
     double near_travel(const Drive& from, const Drive& to) const;
 
     template <typename Io>
