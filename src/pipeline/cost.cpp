@@ -44,8 +44,7 @@ constexpr double kDividedTriangles = 1.17, kDividedVerticesPerFace = 2.5;
 // Addresses beside that memory and those of threads.
 constexpr double kDrawingAddresses = 550e6;
 constexpr double kLongestRun = 30 * 86400.0;
-constexpr double kFarShorter = 4;  // a step than a body needs
-constexpr double kFarMore = 10;    // steps than explicit ones
+constexpr double kFarMore = 10;  // steps than explicit ones
 // Cells, over those that are to be counted, before it is given up: of so few a body may have no
 // matter, and a machine's part no hold.
 constexpr double kCountedInVain = 10;
@@ -367,30 +366,6 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         }
     }
     return estimate;
-}
-
-std::string step_note(const SceneSpec& scene, const CountedMatter& counted) {
-    for (const StageSpec& stage : scene.stage) {
-        const Solver solver = stage.sim.solver;
-        if (!follows_all_motion(solver)) continue;
-        std::vector<double> steps;
-        for (std::size_t b = 0; b < counted.matter.size(); ++b) {
-            steps.push_back(counted.steps_per_second(b, stage.sim));
-        }
-        const auto most = std::max_element(steps.begin(), steps.end());
-        std::string others;
-        for (std::size_t b = 0; b < steps.size(); ++b) {
-            if (*most < kFarShorter * steps[b]) continue;
-            others += fmt::format("{}{} {:.0f} times", others.empty() ? "" : ", ",
-                                  scene.body[b].name, *most / steps[b]);
-        }
-        if (others.empty()) continue;
-        return fmt::format(
-            "all steps are as short as {} needs, others would allow longer ones: {}; larger cells "
-            "there, or a lower young_modulus that is still stiff beside theirs, take less time",
-            scene.body[std::size_t(most - steps.begin())].name, others);
-    }
-    return {};
 }
 
 Json cost_json(const RunCost& cost) {

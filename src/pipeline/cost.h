@@ -11,6 +11,7 @@
 #include "pipeline/machine_place.h"
 #include "pipeline/run_options.h"
 #include "pipeline/start_warnings.h"
+#include "pipeline/step_note.h"
 #include "pipeline/time_cost.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"
@@ -65,9 +66,6 @@ inline constexpr double kCountedCells = 300'000;
 // (pipeline/counted_matter.h). Throws what these throw.
 RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
                    const RunOptions& options, double most = kCountedCells);
-
-// Which of several bodies makes explicit steps far shorter than others need; empty: none does.
-std::string step_note(const SceneSpec& scene, const CountedMatter& counted);
 
 Json cost_json(const RunCost& cost);
 

@@ -36,10 +36,9 @@ double free_disk(fs::path folder) {
 void refuse_threads(int count) {
     const double wanted = kThreadAddresses * count, left = free_addresses();
     if (wanted <= left) return;
-    fail(ExitCode::resources,
-         "{} threads need about {} of address space, and its limit (ulimit -v) leaves {}: fewer "
-         "--threads need less",
-         count, bytes_text(wanted), bytes_text(left));
+    fail(ExitCode::resources, "{} about {} of address space, and its limit (ulimit -v) leaves {}{}",
+         count == 1 ? "a thread needs" : fmt::format("{} threads need", count), bytes_text(wanted),
+         bytes_text(left), count == 1 ? "" : ": fewer --threads need less");
 }
 
 }  // namespace swage

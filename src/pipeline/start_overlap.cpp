@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "base/units.h"
 #include "geometry/mesh_check.h"
@@ -60,7 +62,7 @@ MatterCells matter_cells(const Aggregate& matter) {
 // How a body stands to a plate that is drawn endless. The work-piece's middle says which of its
 // sides is the right one; what lies on the other, or past the edge, has nothing to lie on.
 struct Standing {
-    std::string astray;  // empty: the body's middle is neither past the edge nor behind
+    std::string astray;  // where the body's middle is; empty: neither past the edge nor behind
     double deep = 0;     // [m] that the body reaches into the plate and beyond
 };
 
@@ -78,9 +80,9 @@ Standing standing_at(const BoxShape& plate, const Pose& plate_from_world, const 
     Standing standing;
     const Vec3 centre = plate_from_world * middle;
     if (!is_over(centre)) {
-        standing.astray = "with its middle past the edge of";
+        standing.astray = "past the edge of";
     } else if (side * centre[thin] < -half) {
-        standing.astray = "with its middle on the far side of";
+        standing.astray = "on the far side of";
     }
     for (const Vec3& point : points) {
         const Vec3 at = plate_from_world * point;
@@ -232,6 +234,7 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
                            machine.spec.name);
     };
     std::vector<Worst> deep(world_from_tool.size());
+    std::map<std::pair<std::size_t, std::string>, Worst> astray;
     for (std::size_t b = first; b < bodies.size(); ++b) {
         const double least =
             (to_move_as_molded ? kTouches : kDeep) * bodies[b].matter->lattice.spacing;
@@ -248,15 +251,20 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
                 standing.deep = -nearest_distance(tool.shape, world_from_tool[n], points);
             }
             if (!standing.astray.empty() && b > 0) {
-                told.push_back(
-                    fmt::format("\"{}\" starts {} {}, which is placed by the work-piece alone and "
-                                "is finite, although it is drawn endless: move the body with `at`, "
-                                "or make the tool larger or lower",
-                                bodies[b].name, standing.astray, set_up(n)));
+                astray[{n, standing.astray}].add(bodies[b].name, 0, 0);
             } else if (standing.deep > least) {
                 deep[n].add(bodies[b].name, standing.deep, standing.deep);
             }
         }
+    }
+    for (const auto& [where, some] : astray) {
+        const std::string others = some.others("body", "bodies");
+        told.push_back(fmt::format(
+            "\"{}\" starts with its middle{} {} {}, which is placed by the work-piece alone and is "
+            "finite, although it is drawn endless: move the {} with `at`, or make the tool larger "
+            "or lower",
+            some.who, others.empty() ? "" : others + ",", where.second, set_up(where.first),
+            some.count == 1 ? "body" : "bodies"));
     }
     for (std::size_t n = 0; n < deep.size(); ++n) {
         if (deep[n].count == 0) continue;

@@ -325,6 +325,36 @@ TEST_CASE("a body that makes all steps far shorter than others need is told, wit
     CHECK(note_of(900, Solver::implicit_steps).empty());
 }
 
+TEST_CASE("many bodies that would allow longer steps are told together") {
+    SceneSpec scene;
+    scene.stage.resize(1);
+    scene.stage[0].sim.solver = Solver::explicit_steps;
+    CountedMatter counted;
+    MoldSettings settings;
+    settings.across = 3;
+    const auto note_of = [&](const std::vector<double>& softer) {
+        scene.body.assign(softer.size(), BodySpec{});
+        counted.matter.clear();
+        counted.coarser.assign(softer.size(), 1.0);
+        for (std::size_t b = 0; b < softer.size(); ++b) {
+            scene.body[b].name = fmt::format("body-{}", b + 1);
+            const Material material{.young_modulus = 1e9 / (softer[b] * softer[b]),
+                                    .density = 1000};
+            counted.matter.push_back(mold(make_shape("bar", {}).mesh, material, settings));
+        }
+        return step_note(scene, counted);
+    };
+    const std::string
+        of = "all steps are as short as body-3 needs, others would allow longer ones: ",
+        so = "; larger cells";
+    CHECK(note_of({21, 21, 1, 21, 21, 21})
+              .find(of + "body-1, body-2, body-4 to body-6 21 times" + so) == 0);
+    CHECK(note_of({21, 21, 1, 30, 21, 21})
+              .find(of + "body-1, body-2, body-5, body-6 21 times; body-4 30 times" + so) == 0);
+    // So many different ones that they would fill a page.
+    CHECK(note_of({21, 22, 1, 23, 24, 25, 26}).find(of + "6 bodies 21 to 26 times" + so) == 0);
+}
+
 TEST_CASE("what is odd about a mesh, and what is too coarse to break as it should, is told") {
     BarScene bar(6);
     bar.scene.body[0].material.strength = 1e4;

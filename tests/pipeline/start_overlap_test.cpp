@@ -103,6 +103,36 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("bodies of which many have nothing to lie on are told in one line") {
+    const Aggregate work_piece = test::make_block(2, 2, 2, 0.1, Material{});
+    const MachineReading floor =
+        read_machine(std::filesystem::path(SWAGE_SOURCE_DIR) / "machines/floor.toml");
+    REQUIRE(floor.machine);
+    const Machine machine =
+        build_machine(*floor.machine, {},
+                      place_work_frame(work_piece, WorldAxis::x, WorldAxis::y, true), work_piece);
+    std::vector<Aggregate> row(5, work_piece);
+    for (int n = 0; n < 5; ++n) {
+        for (double& z : row[n].particle_position.z) z += 1.5 + n;
+    }
+    std::vector<NamedMatter> all = {{"cube", &work_piece}};
+    const auto told = [&](int bodies) {
+        all.resize(1);
+        for (int n = 0; n < bodies; ++n) all.push_back({std::string(1, char('a' + n)), &row[n]});
+        return tool_overlaps(machine, all);
+    };
+    const std::string edge = " past the edge of tool floor of machine floor, which is placed by ",
+                      do_so = ": move the bodies with `at`, or make the tool larger or lower";
+    CHECK(told(1).empty());
+    REQUIRE(told(2).size() == 1);
+    CHECK(told(2)[0].find("\"b\" starts with its middle" + edge) == 0);
+    REQUIRE(told(3).size() == 1);
+    CHECK(told(3)[0].find("\"b\" starts with its middle, as does 1 other body," + edge) == 0);
+    REQUIRE(told(5).size() == 1);
+    CHECK(told(5)[0].find("\"b\" starts with its middle, as do 3 other bodies," + edge) == 0);
+    CHECK(told(5)[0].find(do_so) != std::string::npos);
+}
+
 TEST_CASE("a body beside the work-piece that starts in, beyond or under the floor is told") {
     const Aggregate work_piece = test::make_block(2, 2, 2, 0.1, Material{});
     const MachineReading floor =
