@@ -142,7 +142,7 @@ SectionReference unit_reference() {
     all.key.push_back(
         {"a number alone", "", "", "is in SI units: metres, radians, seconds, pascals"});
     all.key.push_back(
-        {"spelling", "", "", "m2 may be written m^2 or m\u00b2, and N m as N\u00b7m"});
+        {"spelling", "", "", "m2 may be written m^2 or m\u00b2, and N m as N\u00b7m or N-m"});
     for (const std::string& name : quantity_names()) {
         const std::vector<std::string> units = unit_names(*quantity_named(name));
         if (!units.empty()) all.key.push_back({name, "", "", joined(units, ", ")});

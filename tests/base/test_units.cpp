@@ -93,6 +93,19 @@ TEST_CASE("a quantity has the value of its unit, however it is spelled") {
         {"32 ft/s2", Quantity::acceleration, 9.7536},
         {"1000 psi", Quantity::stress, 6894757.293168361},
         {"36 ksi", Quantity::stress, 36 * 6894757.293168361},
+        {"36 kip/in2", Quantity::stress, 36 * 6894757.293168361},
+        {"144 kip/ft2", Quantity::stress, 6894757.293168361},
+        {"490 lbm/ft3", Quantity::density, 7849.0470532404715},
+        {"0.284 lbm/in^3", Quantity::density, 7861.092937697686},
+        {"16 oz/in3", Quantity::density, 27679.904710203125},
+        {"12 ft-lb/in2", Quantity::toughness, 144 * 175.12683524647636},
+        {"1 ft lbf/in2", Quantity::toughness, 12 * 175.12683524647636},
+        {"1 in lb/in^2", Quantity::toughness, 175.12683524647636},
+        {"1 in-lbf/in2", Quantity::toughness, 175.12683524647636},
+        {"1 ft lbf/ft2", Quantity::toughness, 175.12683524647636 / 12},
+        {"16 oz in", Quantity::torque, 0.1129848290276167},
+        {"16 ozf-in", Quantity::torque, 0.1129848290276167},
+        {"16 ozf", Quantity::force, 4.4482216152605},
     };
     for (const Good& one : good) {
         INFO(one.text);
