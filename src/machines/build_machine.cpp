@@ -9,6 +9,7 @@
 #include "geometry/distance_field.h"
 #include "geometry/mesh_read.h"
 #include "machines/bodies.h"
+#include "machines/load_name.h"
 #include "machines/parameters.h"
 #include "machines/repeat.h"
 #include "machines/start_notes.h"
@@ -305,9 +306,9 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
         const Expression& where = spec.box     ? (*spec.box)[0][0]
                                   : spec.force ? (*spec.force)[0]
                                                : spec.pressure;
-        refuse(where, fmt::format("load {} acts on nothing: no part of the work-piece's surface "
+        refuse(where, fmt::format("{} acts on nothing: no part of the work-piece's surface "
                                   "faces that way and lies in its box",
-                                  spec.name));
+                                  load_name(spec.name)));
     }
     load.closed = load.share.empty() && are_whole_surfaces(matter, load.point);
     if (spec.force) {

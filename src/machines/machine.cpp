@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/machine.h"
 
+#include "machines/load_name.h"
 #include "machines/told_at.h"
 
 namespace swage {
@@ -44,9 +45,9 @@ std::vector<double> strengths_at(const Machine& machine, double t) {
     return naming(machine.spec, [&] {
         std::vector<double> strength;
         for (std::size_t n = 0; n < machine.load_strength.size(); ++n) {
-            strength.push_back(told_at("the strength of load " + apparatus.load[n].name, t, [&] {
-                return machine.load_strength[n].at(t, machine.stop);
-            }));
+            strength.push_back(
+                told_at("the strength of " + load_name(apparatus.load[n].name), t,
+                        [&] { return machine.load_strength[n].at(t, machine.stop); }));
         }
         strength.push_back(told_at("gravity_strength", t, [&] {
             return machine.gravity_strength ? machine.gravity_strength->at(t, machine.stop) : 1.0;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/units.h"
+#include "machines/load_name.h"
 #include "machines/tool_clash.h"
 #include "machines/touch.h"
 #include "matter/cell_middle.h"
@@ -161,7 +162,7 @@ std::string clamped_note(const Load& load, const std::vector<Grip>& grips) {
     const bool is_free = std::any_of(load.point.begin(), load.point.end(),
                                      [&](int point) { return !clamped.contains(point); });
     if (is_free) return "";
-    return fmt::format("load {} does nothing: all that it acts on is clamped", load.name);
+    return load_name(load.name) + " does nothing: all that it acts on is clamped";
 }
 
 }  // namespace

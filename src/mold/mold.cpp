@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "geometry/box_mesh.h"
+#include "geometry/mesh_check.h"
 #include "matter/material_volumes.h"
 #include "mold/caps.h"
 #include "mold/insets.h"
@@ -128,16 +129,15 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
                         surplus * cell, deficit * cell, filled, volume));
     }
     if (lost * cell > 1e-6 * volume) {
-        findings.push_back(
-            fmt::format("{:.4g} m3 is lost in pieces too small for cells of {:.4g} m", lost * cell,
-                        frame.spacing));
+        findings.push_back(fmt::format("{} is lost in pieces too small for cells of {}",
+                                       volume_text(lost * cell), length_text(frame.spacing)));
     }
     const double thickness = 2 * volume / surface_area(mesh);
     if (thickness < kThin * frame.spacing) {
-        findings.push_back(
-            fmt::format("the mesh is about {:.3g} m thick, thinner than its cells of {:.3g} m; "
-                        "sheets that share a cell merge (spacing = \"{:.2g} m\" keeps them apart)",
-                        thickness, frame.spacing, 0.5 * thickness));
+        findings.push_back(fmt::format(
+            "the mesh is about {} thick, thinner than its cells of {}; sheets that "
+            "share a cell merge (spacing = \"{}\" keeps them apart)",
+            length_text(thickness), length_text(frame.spacing), length_text(0.5 * thickness)));
     }
     // Separate bodies and handles tell of parts that melted together for want of room.
     const int bodies = count_bodies(mesh);
@@ -145,22 +145,22 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     const std::optional<int> wanted = euler_inside(mesh);
     if (pieces < bodies) {
         findings.push_back(
-            fmt::format("{} separate bodies became {}: they share cells of {:.3g} m or are too "
+            fmt::format("{} separate bodies became {}: they share cells of {} or are too "
                         "small for these; a smaller spacing keeps them apart",
-                        bodies, pieces, frame.spacing));
+                        bodies, pieces, length_text(frame.spacing)));
     } else if (wanted && surplus * cell <= 1e-6 * volume && euler_of(matter) != *wanted) {
         findings.push_back(fmt::format(
-            "with cells of {:.3g} m the matter has other holes or handles than the mesh: parts "
+            "with cells of {} the matter has other holes or handles than the mesh: parts "
             "closer than a cell merge, or thin ones separate; a smaller spacing avoids this",
-            frame.spacing));
+            length_text(frame.spacing)));
     }
 }
 
 [[noreturn]] void refuse_thin(double thickness, double spacing) {
     fail(ExitCode::mesh,
-         "cannot mold: the mesh is about {:.3g} m thick and nearly vanishes in cells of {:.3g} m; "
-         "use spacing = \"{:.2g} m\" or less",
-         thickness, spacing, thickness);
+         "cannot mold: the mesh is about {} thick and nearly vanishes in cells of {}; use "
+         "spacing = \"{}\" or less",
+         length_text(thickness), length_text(spacing), length_text(thickness));
 }
 
 // Of an inset that others have taken all of, nothing is left to be weighed.

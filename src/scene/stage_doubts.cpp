@@ -8,6 +8,7 @@
 
 #include "base/expression.h"
 #include "base/text_error.h"
+#include "machines/load_name.h"
 #include "scene/way_text.h"
 
 namespace swage {
@@ -60,7 +61,7 @@ void judge_loads(const Node& node, const StageSpec& stage, MistakeList& mistakes
                                  : is_zero(load.pressure);
         if (!is_none && !is_zero_throughout(load.strength, stage.duration)) continue;
         mistakes.warn(given->value.item[n].place,
-                      fmt::format("load {} does nothing: its {} is 0{}", load.name,
+                      fmt::format("{} does nothing: its {} is 0{}", load_name(load.name),
                                   !is_none     ? "strength"
                                   : load.force ? "force"
                                                : "pressure",

@@ -60,7 +60,7 @@ TEST_CASE("a later stage that could not be set up at the body as molded is warne
         "to = [\"30 cm\", \"1 cm\", \"1 cm\"]\n");
     const std::string told = told_of(bar);
     INFO(told);
-    CHECK(count_of(told, "load load_1 acts on nothing: ") == 1);
+    CHECK(count_of(told, "load_1 acts on nothing: ") == 1);
     CHECK(says(told, "(stage \"2-hold\", for the work-piece before the first stage)"));
     CHECK(says(bar.json().at("cost").at("warnings").dump(), "load_1 acts on nothing"));
     const Outcome run = bar.run();
