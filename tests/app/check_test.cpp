@@ -234,7 +234,7 @@ TEST_CASE("check tells each stage's solver and why, what its loads push, and how
     INFO(held);
     CHECK(has(held, "  solver       quasistatic, as nothing asks for motion\n"));
     CHECK(has(held, "  load         load_1 pushes with up to 100 mN along the world's -z\n"));
-    CHECK(has(held, "  load         load_2 presses with 2 kPa\n"));
+    CHECK(has(held, "  load         load_2 presses with up to 2 kPa\n"));
     const Json json = Json::parse(check(hold, true));
     const Json& stage = json.at("stages").at(0);
     CHECK(stage.at("solver") == "quasistatic");
