@@ -22,6 +22,11 @@ namespace {
 constexpr double kThinnest = 0.02;  // mean thickness, in cells
 constexpr double kThin = 0.25;
 
+// Of what is only about so long.
+std::string about(double length, int digits) {
+    return length_text(std::stod(fmt::format("{:.{}g}", length, digits)));
+}
+
 // The box, grown to whole cells about its centre (S2.16).
 TriMesh block_around(const TriMesh& mesh, double spacing) {
     const Box box = surface_box(mesh);
@@ -137,7 +142,7 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
         findings.push_back(fmt::format(
             "the mesh is about {} thick, thinner than its cells of {}; sheets that "
             "share a cell merge (spacing = \"{}\" keeps them apart)",
-            length_text(thickness), length_text(frame.spacing), length_text(0.5 * thickness)));
+            about(thickness, 3), length_text(frame.spacing), about(0.5 * thickness, 2)));
     }
     // Separate bodies and handles tell of parts that melted together for want of room.
     const int bodies = count_bodies(mesh);
@@ -160,7 +165,7 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     fail(ExitCode::mesh,
          "cannot mold: the mesh is about {} thick and nearly vanishes in cells of {}; use "
          "spacing = \"{}\" or less",
-         length_text(thickness), length_text(spacing), length_text(thickness));
+         about(thickness, 3), length_text(spacing), about(thickness, 2));
 }
 
 // Of an inset that others have taken all of, nothing is left to be weighed.
