@@ -250,5 +250,5 @@ TEST_CASE("one quantity is one number, in whatever decimal unit it is written") 
     CHECK(parse_quantity("5. mm", Quantity::length) == 0.005);
     CHECK(parse_quantity(".5 mm", Quantity::length) == 0.0005);
     CHECK(mistake_of("1e308 km", Quantity::length) == "0: \"1e308 km\" is too large");
-    CHECK(parse_quantity("1e-320 mm", Quantity::length) == 0);
+    CHECK(parse_quantity("1e-320 mm", Quantity::length) < 1e-320);
 }
