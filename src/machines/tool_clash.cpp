@@ -50,9 +50,10 @@ double depth_in(const Body& of, const Body& in, const Pose& in_from_of) {
     const Vec3 middle = in.box.center(), half = 0.5 * in.box.size();
     const Vec3 between = in_from_of * of.box.center() - middle;
     if (between.norm() > half.norm() + 0.5 * of.box.size().norm()) return 0;
+    const Mat3 turn = in_from_of.rotation.toRotationMatrix();  // for many points
     double deepest = 0;
     for (const Vec3& point : of.point) {
-        const Vec3 at = in_from_of * point;
+        const Vec3 at = turn * point + in_from_of.translation;
         if (((at - middle).cwiseAbs().array() > half.array()).any()) continue;
         deepest = std::max(deepest, -distance_to(*in.shape, at).value);
     }
