@@ -12,7 +12,7 @@ namespace swage {
 namespace {
 
 constexpr double kNothing = 1e-9;   // spacings
-constexpr double kSureShare = 0.5;  // of a distance, as of sim/tool_pairs.h
+constexpr double kSureShare = 0.5;  // of a distance, as of sim/tool_pairs.cpp
 
 Box box_of(const Vec3Array& position) {
     Box box;
