@@ -296,9 +296,8 @@ void count(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& 
     const double flight =
         start_flight(first, machine, bodies, 1 / steps_per_second(scene, cost, &made, first.sim));
     if (flight > kWorthTelling * first.duration) {
-        cost.note.push_back(
-            fmt::format("{}: free flight for the first {} takes next to no steps",
-                        first.name, rounded_text(flight, Quantity::time, 3)));
+        cost.note.push_back(fmt::format("{}: free flight for the first {} takes next to no steps",
+                                        first.name, rounded_text(flight, Quantity::time, 3)));
     }
     add_up(cost, scene, input, options, &made,
            {equilibria_of(first, machine, made, cost.work_piece().spacing), flight});

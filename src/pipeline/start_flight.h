@@ -10,8 +10,8 @@
 
 namespace swage {
 
-// Of the first stage, as the bodies are at its start, in steps of this length [s]; 0 where its tools
-// move, or anything but gravity acts.
+// Of the first stage, as the bodies are at its start, in steps of this length [s]; 0 where its
+// tools move, or anything but gravity acts.
 double start_flight(const StageSpec& stage, const Machine& machine,
                     const std::vector<NamedMatter>& bodies, double step);
 

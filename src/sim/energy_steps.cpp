@@ -101,8 +101,7 @@ std::vector<EnergySteps::Group> EnergySteps::groups(const Drive& from, const Dri
     std::vector<double> far;  // of the group that begins with it
     std::vector<std::size_t> first(mover_.size());
     for (std::size_t b = 0; b < first.size(); ++b) {
-        const Vec3Array& x = mover_[b].body.matter().particle_position;
-        for (std::size_t p = 0; p < x.size(); ++p) box[b].grow(x.at(p));
+        box[b] = box_of(mover_[b].body.matter().particle_position);
         far.push_back(reach_of(mover_[b].body, from, to));
         first[b] = b;
     }

@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "laws/volume_guard.h"
+#include "matter/spring_layout.h"
 #include "sim/cell_batch.h"
 #include "sim/connection_shares.h"
-#include "matter/spring_layout.h"
 #include "sim/vector_clones.h"
 
 namespace swage {

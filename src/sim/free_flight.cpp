@@ -5,20 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/tool_entry.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
 
 namespace {
 
-constexpr double kNothing = 1e-9;   // spacings
-constexpr double kSureShare = 0.5;  // of a distance, as of sim/tool_pairs.cpp
-
-Box box_of(const Vec3Array& position) {
-    Box box;
-    for (std::size_t p = 0; p < position.size(); ++p) box.grow(position.at(p));
-    return box;
-}
+constexpr double kNothing = 1e-9;  // spacings
 
 // What the body has surely left to go to a tool, whichever way [m].
 double sure_gap(const Tool& tool, const Pose& world_from_tool, const Flyer& body) {
@@ -61,8 +55,8 @@ double top_speed(const Tool& tool, const Pose& from, const Pose& to, double time
 
 // What goes this way takes at the least, beginning at this speed.
 double time_for(double way, double speed, double acceleration) {
-    const double end = std::sqrt(speed * speed + 2 * acceleration * way);
     if (!(way > 0)) return 0;
+    const double end = std::sqrt(speed * speed + 2 * acceleration * way);
     return end > 0 ? 2 * way / (speed + end) : std::numeric_limits<double>::infinity();
 }
 

@@ -9,7 +9,6 @@ namespace swage {
 namespace {
 
 constexpr int kMostEven = 256, kMostSteps = 1024;  // of a way
-constexpr double kSureShare = 0.5;                 // of a distance, as of sim/tool_pairs.cpp
 
 ToolEntry entry_at(const Distance& distance, const Vec3& place) {
     return {distance.normal, distance.normal.dot(place) - distance.value};

@@ -8,6 +8,10 @@
 
 namespace swage {
 
+// Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
+// grid, may change sqrt(3) times as fast as the place.
+inline constexpr double kSureShare = 0.5;
+
 // In the tool's frame. A normal of zero: none.
 struct ToolEntry {
     Vec3 normal = Vec3::Zero();

@@ -12,9 +12,6 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kPointsPerChunk = 4096;
-// Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
-// grid, may change sqrt(3) times as fast as the place.
-constexpr double kSureShare = 0.5;
 // Spacings that a point beyond the middle of a tool may lie beside it, and how much deeper than it
 // did at rest where nothing has a speed: what is let go of there goes round tools and through them
 // on its way to rest, and no tool goes farther at once (increments_between()).

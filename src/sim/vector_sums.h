@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "geometry/box.h"
 #include "matter/aggregate.h"
 
 namespace swage {
@@ -74,6 +75,12 @@ inline double farthest_move(const Vec3Array& from, const Vec3Array& to) {
                              std::abs(to.z[p] - from.z[p])});
     }
     return farthest;
+}
+
+inline Box box_of(const Vec3Array& position) {
+    Box box;
+    for (std::size_t p = 0; p < position.size(); ++p) box.grow(position.at(p));
+    return box;
 }
 
 inline double longest_of(const Vec3Array& ways) {

@@ -12,6 +12,20 @@
 
 using namespace swage;
 
+namespace {
+
+// Of a cube of 20 cm about the origin its top is at y = -0.3; 4 m by 4 m, 0.2 m thick.
+Machine floor_under(const Aggregate& work_piece) {
+    const MachineReading floor =
+        read_machine(std::filesystem::path(SWAGE_SOURCE_DIR) / "machines/floor.toml");
+    REQUIRE(floor.machine);
+    return build_machine(*floor.machine, {},
+                         place_work_frame(work_piece, WorldAxis::x, WorldAxis::y, true),
+                         work_piece);
+}
+
+}  // namespace
+
 TEST_CASE("bodies that lie in each other at the start are told, those that touch are not") {
     const Aggregate one = test::make_block(4, 4, 4, 0.1, Material{});
     const auto told = [&](double spacing, int across, double away) {
@@ -105,12 +119,7 @@ TEST_CASE(
 
 TEST_CASE("bodies of which many have nothing to lie on are told in one line") {
     const Aggregate work_piece = test::make_block(2, 2, 2, 0.1, Material{});
-    const MachineReading floor =
-        read_machine(std::filesystem::path(SWAGE_SOURCE_DIR) / "machines/floor.toml");
-    REQUIRE(floor.machine);
-    const Machine machine =
-        build_machine(*floor.machine, {},
-                      place_work_frame(work_piece, WorldAxis::x, WorldAxis::y, true), work_piece);
+    const Machine machine = floor_under(work_piece);
     std::vector<Aggregate> row(5, work_piece);
     for (int n = 0; n < 5; ++n) {
         for (double& z : row[n].particle_position.z) z += 1.5 + n;
@@ -135,13 +144,7 @@ TEST_CASE("bodies of which many have nothing to lie on are told in one line") {
 
 TEST_CASE("a body beside the work-piece that starts in, beyond or under the floor is told") {
     const Aggregate work_piece = test::make_block(2, 2, 2, 0.1, Material{});
-    const MachineReading floor =
-        read_machine(std::filesystem::path(SWAGE_SOURCE_DIR) / "machines/floor.toml");
-    REQUIRE(floor.machine);
-    // Its top at y = -0.3, 4 m by 4 m, 0.2 m thick.
-    const Machine machine =
-        build_machine(*floor.machine, {},
-                      place_work_frame(work_piece, WorldAxis::x, WorldAxis::y, true), work_piece);
+    const Machine machine = floor_under(work_piece);
     int other_cells = 4;
     bool to_move_as_molded = false;
     const auto told = [&](const Vec3& at) {
