@@ -10,86 +10,18 @@ namespace swage::test {
 
 using Distance = std::function<double(const Vec3&)>;  // negative inside [m]
 
-inline Vec3 gradient_of(const Distance& distance, const Vec3& at, double reach) {
-    Vec3 g;
-    for (int d = 0; d < 3; ++d) {
-        g[d] = distance(at + reach * Vec3::Unit(d)) - distance(at - reach * Vec3::Unit(d));
-    }
-    return g.normalized();
-}
+Vec3 gradient_of(const Distance& distance, const Vec3& at, double reach);
 
 // Fills the shape with cells of edge `a` over the box `low` to `low + a * count`. Each cell's fill
 // is sampled; each half-cell that the surface passes through holds one surface point.
-inline Aggregate make_shape(const Distance& distance, const Vec3& low, const Vec3i& count,
-                            double a) {
-    constexpr int kSamples = 8;
-    std::vector<Vec3i> cells;
-    std::vector<float> fill;
-    for (int k = 0; k < count.z(); ++k) {
-        for (int j = 0; j < count.y(); ++j) {
-            for (int i = 0; i < count.x(); ++i) {
-                const Vec3 corner = low + a * Vec3(i, j, k);
-                const double middle = distance(corner + Vec3::Constant(a / 2));
-                int inside = 0;
-                for (int s = 0; s < kSamples * kSamples * kSamples; ++s) {
-                    const Vec3 at(s % kSamples, s / kSamples % kSamples, s / kSamples / kSamples);
-                    if (std::abs(middle) > a) {
-                        inside += middle < 0;
-                    } else {
-                        inside += distance(corner + a / kSamples * (at + Vec3::Constant(.5))) < 0;
-                    }
-                }
-                if (inside == 0) continue;
-                cells.emplace_back(i, j, k);
-                fill.push_back(static_cast<float>(inside) / (kSamples * kSamples * kSamples));
-            }
-        }
-    }
-    Aggregate m = make_matter(low, a, count, cells, fill);
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-        for (int s = 0; s < 8; ++s) {
-            const Vec3 half(s & 1, s >> 1 & 1, s >> 2);
-            const Vec3 corner = low + a * (cells[c].cast<double>() + 0.5 * half);
-            Vec3 at = corner + Vec3::Constant(a / 4), normal;
-            const double depth = distance(at);
-            if (std::abs(depth) > a / 2) continue;
-            for (int n = 0; n < 4; ++n) {
-                normal = gradient_of(distance, at, 1e-5 * a);
-                at -= distance(at) * normal;
-            }
-            // A surface on the bins' common face belongs to the one inside.
-            const double slack = depth < 0 ? 1e-6 : -1e-6;
-            const Vec3 xi = (at - corner) / (a / 2);
-            if ((xi.array() < -slack).any() || (xi.array() > 1 + slack).any()) continue;
-            const Vec3 local = (at - low) / a - cells[c].cast<double>();
-            m.surface.add(m.lattice.cell_row(static_cast<CellId>(c)), local, a * a / 4, normal);
-        }
-    }
-    return m;
-}
+Aggregate make_shape(const Distance& distance, const Vec3& low, const Vec3i& count, double a);
 
 // Severs every connection that crosses the plane, as a blade does: a particle on it counts as
 // being on the positive side. Only connections whose middle satisfies `where`.
-inline void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
-                        const std::function<bool(const Vec3&)>& where = nullptr) {
-    const Vec3 on_plane = point + m.lattice.spacing * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
-    for (const Span& span : m.lattice.span) {
-        for (int n = 0; n < span.count; ++n) {
-            const Vec3 a = m.particle_position.at(span.lower + n);
-            const Vec3 b = m.particle_position.at(span.upper + n);
-            const bool crosses = (normal.dot(a - on_plane) >= 0) != (normal.dot(b - on_plane) >= 0);
-            if (crosses && (!where || where(0.5 * (a + b)))) {
-                m.connection[span.direction].weight.set(span.lower + n, 0);
-            }
-        }
-    }
-}
+void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
+                 const std::function<bool(const Vec3&)>& where = nullptr);
 
 // Puts every particle where the map takes its reference position.
-inline void deform(Aggregate& m, const std::function<Vec3(const Vec3&)>& map) {
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        m.particle_position.set(p, map(m.particle_reference.at(p)));
-    }
-}
+void deform(Aggregate& m, const std::function<Vec3(const Vec3&)>& map);
 
 }  // namespace swage::test
