@@ -50,6 +50,13 @@ void smooth_across_edges(TriMesh& mesh, const Smooth& smooth) {
 
 }  // namespace
 
+TriMesh::TriMesh() = default;
+TriMesh::~TriMesh() = default;
+TriMesh::TriMesh(const TriMesh&) = default;
+TriMesh::TriMesh(TriMesh&&) noexcept = default;
+TriMesh& TriMesh::operator=(const TriMesh&) = default;
+TriMesh& TriMesh::operator=(TriMesh&&) noexcept = default;
+
 double signed_volume(const TriMesh& mesh) {
     if (mesh.triangle.empty()) return 0;
     const Vec3 center = box_of(mesh.position).center();

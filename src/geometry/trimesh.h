@@ -43,6 +43,14 @@ struct SurfaceMaterial {
 };
 
 struct TriMesh {
+    // Compiled once: a copy is thousands of instructions, which many places make.
+    TriMesh();
+    ~TriMesh();
+    TriMesh(const TriMesh&);
+    TriMesh(TriMesh&&) noexcept;
+    TriMesh& operator=(const TriMesh&);
+    TriMesh& operator=(TriMesh&&) noexcept;
+
     std::vector<Vec3> position;     // [m], welded: one entry for each place
     std::vector<Corners> triangle;  // ids into position, counter-clockwise from outside
 

@@ -148,6 +148,14 @@ struct CheckSpec {
 };
 
 struct MachineSpec {
+    // Compiled once: a copy is thousands of instructions, which many places make.
+    MachineSpec();
+    ~MachineSpec();
+    MachineSpec(const MachineSpec&);
+    MachineSpec(MachineSpec&&) noexcept;
+    MachineSpec& operator=(const MachineSpec&);
+    MachineSpec& operator=(MachineSpec&&) noexcept;
+
     std::string name;
     std::string help;
     std::filesystem::path file;

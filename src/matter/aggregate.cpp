@@ -72,6 +72,13 @@ std::ptrdiff_t place_of(const std::vector<CellSet>& all, CellId cell) {
 }
 }  // namespace
 
+Aggregate::Aggregate() = default;
+Aggregate::~Aggregate() = default;
+Aggregate::Aggregate(const Aggregate&) = default;
+Aggregate::Aggregate(Aggregate&&) noexcept = default;
+Aggregate& Aggregate::operator=(const Aggregate&) = default;
+Aggregate& Aggregate::operator=(Aggregate&&) noexcept = default;
+
 const CellSet* Aggregate::set_of(CellId cell) const {
     const auto at = static_cast<std::size_t>(place_of(cell_set, cell));
     return at < cell_set.size() && cell_set[at].cell == cell ? &cell_set[at] : nullptr;

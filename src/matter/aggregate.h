@@ -95,6 +95,14 @@ struct BranchMemory {
 };
 
 struct Aggregate {
+    // Compiled once: a copy is thousands of instructions, which many places make.
+    Aggregate();
+    ~Aggregate();
+    Aggregate(const Aggregate&);
+    Aggregate(Aggregate&&) noexcept;
+    Aggregate& operator=(const Aggregate&);
+    Aggregate& operator=(Aggregate&&) noexcept;
+
     Material material;  // its mechanics, friction and damping are the whole body's
     Lattice lattice;
 

@@ -16,7 +16,7 @@ template <typename Io>
 void visit_json(Io& io, Json& json) {
     std::string text = json_text(json);
     io(text);
-    if constexpr (Io::kReads) json = Json::parse(text);
+    if constexpr (Io::kReads) json = parse_json(text);
 }
 
 struct Head {

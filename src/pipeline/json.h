@@ -9,10 +9,11 @@ namespace swage {
 
 using Json = nlohmann::ordered_json;
 
+// Of what reads and writes it each place that does would compile its own, a second's worth.
+Json parse_json(const std::string& text);  // throws Json::exception
+
 // One document, indented, ending in a newline. Text that is no UTF-8 (a file name may be any
 // bytes) is shown with replacement characters and never throws.
-inline std::string json_text(const Json& json) {
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string json_text(const Json& json);
 
 }  // namespace swage

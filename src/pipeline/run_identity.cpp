@@ -127,7 +127,7 @@ std::string identity_text(const RunIdentity& identity) {
 RunIdentity read_identity(const fs::path& file) {
     RunIdentity identity;
     try {
-        const Json json = Json::parse(record_text(file, ExitCode::foreign));
+        const Json json = parse_json(record_text(file, ExitCode::foreign));
         identity.version = json.at("version").get<std::string>();
         identity.build = json.value("build", "unknown");
         for (const Json& input : json.at("inputs")) {

@@ -129,9 +129,13 @@ void write_record(const RunDirectory& directory, Json& record, const Stopwatch& 
 std::optional<Json> read_record(const fs::path& file) {
     std::error_code error;
     if (!fs::exists(file, error)) return std::nullopt;
-    Json json = Json::parse(record_text(file, ExitCode::output), nullptr, false);
-    if (!json.is_object() || !json.contains("state")) return std::nullopt;
-    return json;
+    const std::string text = record_text(file, ExitCode::output);
+    try {
+        Json json = parse_json(text);
+        if (json.is_object() && json.contains("state")) return json;
+    } catch (const Json::exception&) {  // no record
+    }
+    return std::nullopt;
 }
 
 Json record_of_run(const fs::path& run) {

@@ -7,13 +7,12 @@
 
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_write.h"
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 TEST_CASE("check, the log and the record tell how a machine stands and what its loads act on") {
     const Scratch scratch;
@@ -32,8 +31,8 @@ TEST_CASE("check, the log and the record tell how a machine stands and what its 
     const Outcome run = run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
     CHECK(run.err.find("1-hold: " + axes) != std::string::npos);
     CHECK(run.err.find("1-hold: " + load) != std::string::npos);
-    const Json told = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
-    const Json record = Json::parse(bytes_of(out / "run.json"));
+    const Json told = parse_json(run_swage({"check", scene.string(), "--json"}).out);
+    const Json record = parse_json(bytes_of(out / "run.json"));
     for (const char* key : {"name", "axes", "loads"}) {
         CHECK(told.at("stages").at(0).at(key) == record.at("stages").at(0).at(key));
     }
@@ -51,12 +50,11 @@ TEST_CASE("the steps that a run takes lie in the range that check tells") {
         put_text(scene, "[mesh]\nfile = \"bar.obj\"\n[material]\n" + material +
                             "[mold]\nacross = 3\n[[stage]]\nframes = 4\nmachine = \"" + stage);
         run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
-        const Json cost =
-            Json::parse(run_swage({"check", scene.string(), "--json"}).out).at("cost");
+        const Json cost = parse_json(run_swage({"check", scene.string(), "--json"}).out).at("cost");
         const Outcome run = run_swage(
             {"run", scene.string(), "--no-render", "--json", "--fresh", "--out", out.string()});
         INFO(stage << material << run.err << cost);
-        const Json record = Json::parse(run.out).at("stages").at(0);
+        const Json record = parse_json(run.out).at("stages").at(0);
         const double steps =
             record.at("steps").get<double>() + record.at("iterations").get<double>();
         CHECK(steps >= 0.99 * cost.at("steps_least").get<double>());
@@ -87,7 +85,7 @@ TEST_CASE("the steps that a run takes lie in the range that check tells") {
 TEST_CASE("what a run leaves on the disk, stills too, lies in the range that check tells") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 9), out = scratch.path() / "run";
-    const Json cost = Json::parse(run_swage({"check", scene.string(), "--json"}).out).at("cost");
+    const Json cost = parse_json(run_swage({"check", scene.string(), "--json"}).out).at("cost");
     REQUIRE(run_swage({"run", scene.string(), "--out", out.string()}).code == 0);
     double taken = 0;
     for (const auto& [name, bytes] : files_below(out)) taken += static_cast<double>(bytes.size());
@@ -134,7 +132,7 @@ TEST_CASE("a tube's accuracy is told of the whole and of its wall, and as elasti
         text.find("bend by themselves (a ring squeezed flat, a bracket): too few cells; 1 % at") !=
         std::string::npos);
     CHECK(text.find("permanent deformation") == std::string::npos);
-    const Json json = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    const Json json = parse_json(run_swage({"check", scene.string(), "--json"}).out);
     CHECK(json.at("accuracy_of_whole").at("across_for_percent") == 12);
     CHECK(json.at("accuracy").at("across_for_percent").get<int>() > 90);
     // A mesh that says how it looks hides how its material does.
@@ -204,9 +202,9 @@ TEST_CASE("of many bodies that are alike each thing is said once, by check and b
                    "bodies)") != std::string::npos);
     CHECK(count(lines(9, "check")) <= count(check));
     CHECK(count(lines(9, "run")) <= count(run));
-    const Json record = Json::parse(bytes_of(scratch.path() / "many" / "run.json"));
+    const Json record = parse_json(bytes_of(scratch.path() / "many" / "run.json"));
     CHECK(record.at("warnings").size() < 9);
-    const Json told = Json::parse(run_swage({"check", "many.toml", "--json"}, scratch.path()).out);
+    const Json told = parse_json(run_swage({"check", "many.toml", "--json"}, scratch.path()).out);
     CHECK(told.at("meshes").size() == 9);
     CHECK(told.at("cost").at("bodies").size() == 9);
 }
@@ -235,7 +233,7 @@ TEST_CASE("check tells each stage's solver and why, what its loads push, and how
     CHECK(has(held, "  solver       quasistatic, as nothing asks for motion\n"));
     CHECK(has(held, "  load         load_1 pushes with up to 100 mN along the world's -z\n"));
     CHECK(has(held, "  load         load_2 presses with up to 2 kPa\n"));
-    const Json json = Json::parse(check(hold, true));
+    const Json json = parse_json(check(hold, true));
     const Json& stage = json.at("stages").at(0);
     CHECK(stage.at("solver") == "quasistatic");
     CHECK(stage.at("solver_chosen_as") == "nothing asks for motion");
@@ -252,7 +250,7 @@ TEST_CASE("check tells each stage's solver and why, what its loads push, and how
               "  solver       explicit, as machine floor is for motion\n"));
     CHECK(has(check(bend + "solver = \"explicit\"\nduration = \"1 s\"\n" + bend),
               "  solver       1-bend: explicit\n  solver       2-bend: quasistatic, as "));
-    const Json film = Json::parse(check(bend + "solver = \"explicit\"\nduration = \"1 s\"\n", true))
+    const Json film = parse_json(check(bend + "solver = \"explicit\"\nduration = \"1 s\"\n", true))
                           .at("stages")
                           .at(0)
                           .at("film");
@@ -266,7 +264,7 @@ TEST_CASE("check tells each stage's solver and why, what its loads push, and how
                  bend);
     CHECK(has(run_swage({"check", scene.string()}).out,
               "  solver       explicit, as work-piece starts with a velocity or spin\n"));
-    const Json springs = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    const Json springs = parse_json(run_swage({"check", scene.string(), "--json"}).out);
     CHECK(springs.at("accuracy").at("bending").is_null());
     CHECK(has(springs.at("accuracy").at("note").get<std::string>(), "too stiff in bending"));
 }

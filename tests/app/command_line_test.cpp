@@ -4,13 +4,12 @@
 #include <array>
 #include <sstream>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 namespace {
 
@@ -103,7 +102,7 @@ TEST_CASE("check tells every mistake at once, with its place, and as JSON") {
     CHECK(outcome.err.find("small.toml:14:") != std::string::npos);
     const Outcome json = run_swage({"check", scene.string(), "--json"});
     CHECK(json.code == 3);
-    CHECK(Json::parse(json.out).at("mistakes").size() == 2);
+    CHECK(parse_json(json.out).at("mistakes").size() == 2);
 }
 
 TEST_CASE("all of a machine's parameters that the work-piece does not allow are told at once") {
@@ -121,7 +120,7 @@ TEST_CASE("all of a machine's parameters that the work-piece does not allow are 
     CHECK(outcome.err.find("wrong.toml:10:17: machine bend: pusher_radius = 40 cm is out of") !=
           std::string::npos);
     CHECK(outcome.err.find("the default of") == std::string::npos);
-    const Json json = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    const Json json = parse_json(run_swage({"check", scene.string(), "--json"}).out);
     CHECK(json.at("mistakes").size() == 2);
 }
 
@@ -130,7 +129,7 @@ TEST_CASE("a mistake that only the mesh shows has its place in JSON, as those be
     const fs::path scene = put_small_scene(scratch.path());
     const auto mistake = [&](const char* set) {
         const Json json =
-            Json::parse(run_swage({"check", scene.string(), "--json", "--set", set}).out);
+            parse_json(run_swage({"check", scene.string(), "--json", "--set", set}).out);
         return json.at("mistakes").at(0);
     };
     put_text(scene, bytes_of(scene) + "[[stage]]\nmachine = \"bend\"\n");
@@ -182,7 +181,7 @@ TEST_CASE("check tells what a run will cost, and the run costs it") {
     const Outcome outcome = run_swage({"check", scene.string(), "--json"});
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
-    const Json cost = Json::parse(outcome.out).at("cost");
+    const Json cost = parse_json(outcome.out).at("cost");
     CHECK(cost.at("cells") == 40);
     CHECK(cost.at("particles") == 99);
     CHECK(cost.at("frames") == 4);
@@ -218,12 +217,12 @@ TEST_CASE("a skin is closed where matter breaks, also where a blade has cut befo
             CHECK(run.err.find("could not be closed") == std::string::npos);
             // The splinters have left the floor again by the end of the frame.
             CHECK(run.err.find("never touched") == std::string::npos);
-            const Json record = Json::parse(bytes_of(out / "run.json")).at("stages").back();
+            const Json record = parse_json(bytes_of(out / "run.json")).at("stages").back();
             CHECK(record.at("broken") > 0);
             CHECK(record.at("pieces") > 2);
             const std::string name = record.at("name").get<std::string>() + ".obj";
             const Json info =
-                Json::parse(run_swage({"info", (out / "meshes" / name).string(), "--json"}).out);
+                parse_json(run_swage({"info", (out / "meshes" / name).string(), "--json"}).out);
             CHECK(info.at("watertight") == true);
             CHECK(info.at("components") > 1);
         }
@@ -231,13 +230,13 @@ TEST_CASE("a skin is closed where matter breaks, also where a blade has cut befo
 }
 
 TEST_CASE("info and machines tell the same in words and in JSON") {
-    const Json info = Json::parse(run_swage({"info", "assets/meshes/bar.obj", "--json"}).out);
+    const Json info = parse_json(run_swage({"info", "assets/meshes/bar.obj", "--json"}).out);
     CHECK(info.at("watertight") == true);
     CHECK(info.at("components") == 1);
     CHECK(info.at("volume_m3").get<double>() > 0);
     CHECK(run_swage({"info", "assets/meshes/bar.obj"}).out.find("watertight") != std::string::npos);
 
-    const Json machines = Json::parse(run_swage({"machines", "--json"}).out);
+    const Json machines = parse_json(run_swage({"machines", "--json"}).out);
     std::vector<std::string> names;
     for (const Json& machine : machines) names.push_back(machine.at("name").get<std::string>());
     for (const char* name : {"bend", "twist", "cut"}) {
@@ -290,7 +289,7 @@ TEST_CASE("info tells what a run makes of a mesh that bounds no volume, or a wro
         CHECK(repaired == inside_out);
         CHECK((told.find("a run") != std::string::npos) == inside_out);
     }
-    const Json bar = Json::parse(run_swage({"info", "assets/meshes/bar.obj", "--json"}).out);
+    const Json bar = parse_json(run_swage({"info", "assets/meshes/bar.obj", "--json"}).out);
     CHECK(bar.at("repairs").empty());
 }
 
@@ -327,7 +326,7 @@ TEST_CASE("made meshes are the same to the bit each time, and as large as asked 
     for (const fs::path& file : {a, b}) {
         REQUIRE(run_swage({"make", "bar", "--length", "30 cm", "--out", file.string()}).code == 0);
     }
-    const Json info = Json::parse(run_swage({"info", a.string(), "--json"}).out);
+    const Json info = parse_json(run_swage({"info", a.string(), "--json"}).out);
     CHECK(info.at("box_m").at("high").at(0).get<double>() == Approx(0.15));
     std::string first = bytes_of(a), second = bytes_of(b);
     // Each names its own material library.
@@ -353,7 +352,7 @@ TEST_CASE("data goes to stdout alone, and --quiet leaves stderr empty") {
     const Outcome info = run_swage({"info", "assets/meshes/bar.obj", "--quiet", "--json"});
     CHECK(info.code == 0);
     CHECK(info.err.empty());
-    CHECK_NOTHROW(Json::parse(info.out));
+    CHECK_NOTHROW(parse_json(info.out));
 }
 
 TEST_CASE("check tells of every body how fine it is, and what it would need") {
@@ -373,14 +372,14 @@ TEST_CASE("check tells of every body how fine it is, and what it would need") {
           std::string::npos);
     CHECK(text.out.find("[[body]] \"pane\" across = ") != std::string::npos);
     CHECK(text.out.find("[mold] across = ") == std::string::npos);
-    const Json json = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    const Json json = parse_json(run_swage({"check", scene.string(), "--json"}).out);
     CHECK(json.at("strength").at(0).at("body") == "pane");
     CHECK(json.at("bodies").at("pane").at("accuracy").contains("bending"));
     CHECK(json.at("cost").at("bodies").size() == 2);
     const fs::path out = scratch.path() / "run";
     const Outcome run = run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
     CHECK(run.err.find("[[body]] \"pane\" across = ") != std::string::npos);
-    const Json record = Json::parse(bytes_of(out / "run.json"));
+    const Json record = parse_json(bytes_of(out / "run.json"));
     REQUIRE_FALSE(json.at("cost").at("warnings").empty());
     CHECK(json.at("cost").at("warnings").at(0) == record.at("warnings").at(0));
 }
@@ -405,10 +404,10 @@ TEST_CASE("what matter has not as its mesh has it stands in the record, and in w
     put_text(scene,
              "[mesh]\nfile = \"twins.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 3\n"
              "[[stage]]\nmachine = \"hold\"\nframes = 1\n");
-    const Json found = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    const Json found = parse_json(run_swage({"check", scene.string(), "--json"}).out);
     const fs::path out = scratch.path() / "run";
     run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
-    const Json record = Json::parse(bytes_of(out / "run.json"));
+    const Json record = parse_json(bytes_of(out / "run.json"));
     for (const Json& warnings : {found.at("cost").at("warnings"), record.at("warnings")}) {
         REQUIRE(warnings.size() >= 1);
         CHECK(warnings[0].get<std::string>().find("mold: 2 separate bodies became 1") == 0);

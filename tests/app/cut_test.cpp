@@ -6,16 +6,15 @@
 #include "geometry/mesh_read.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/frame_store.h"
-#include "pipeline/json.h"
 #include "pipeline/piece_track.h"
 #include "pipeline/run_record.h"
 #include "skin/new_look.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 TEST_CASE("a cut through what has flowed unevenly has flat faces") {
     const Scratch scratch;
@@ -90,7 +89,7 @@ TEST_CASE("pieces have one order, in meshes and in passes") {
     REQUIRE(outcome.code == 0);
     const swage::FrameStore store(out / "motion.bin");
     const swage::PieceTrack track(
-        store, swage::run_names_of(Json::parse(bytes_of(out / "run.json"))).piece);
+        store, swage::run_names_of(parse_json(bytes_of(out / "run.json"))).piece);
     const swage::StoredBody last = store.frame(store.frame_count() - 1).body.at(0);
     const swage::TriMesh skin = store.skin(last.skin);
     const std::vector<int> piece = track.of_triangles(0, last.skin, skin);
@@ -132,7 +131,7 @@ TEST_CASE("a blade severs as much in one frame as in forty, and nothing more on 
             run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
-        const Json stage = Json::parse(bytes_of(run / "run.json")).at("stages").at(0);
+        const Json stage = parse_json(bytes_of(run / "run.json")).at("stages").at(0);
         CHECK(stage.at("pieces") == 2);
         CHECK(swage::check_mesh(swage::read_mesh(run / "meshes/1-cut.obj")).watertight);
         return stage.at("severed").get<int>();
@@ -154,7 +153,7 @@ TEST_CASE("a blade severs a body that comes under it when another has been cut")
                         "[[stage]]\nmachine = \"cut\"\ncutting = 0.9\nrising = 0\npart = 0\n"
                         "clearance = \"6 cm\"\nframes = 20\nduration = \"0.2 s\"\n");
     REQUIRE(run_swage({"run", scene.string(), "--no-render", "--out", out.string()}).code == 0);
-    const Json stage = Json::parse(bytes_of(out / "run.json")).at("stages").back();
+    const Json stage = parse_json(bytes_of(out / "run.json")).at("stages").back();
     CHECK(stage.at("severed") > 40);  // 33 in the first
     CHECK(stage.at("pieces") == 3);
 }
@@ -194,7 +193,7 @@ TEST_CASE("info calls what touches manifold by its numbers, and not by place") {
     const std::string told = run_swage({"info", file.string()}).out;
     CHECK(told.find("manifold     yes, going by its vertex numbers\n") != std::string::npos);
     CHECK(told.find("by place     not manifold\n") != std::string::npos);
-    const Json json = Json::parse(run_swage({"info", file.string(), "--json"}).out);
+    const Json json = parse_json(run_swage({"info", file.string(), "--json"}).out);
     CHECK(json.at("manifold") == false);
     CHECK(json.at("manifold_as_numbered") == true);
     CHECK(run_swage({"info", SWAGE_SOURCE_DIR "/assets/meshes/bar.obj"}).out.find("by place") ==

@@ -5,9 +5,9 @@
 
 #include <sstream>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 #include "tests/shared/usda.h"
 
@@ -39,7 +39,7 @@ TEST_CASE("what a run exports ends as the mesh that it leaves, whatever the lang
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     const fs::path file = run / "usd/small.usda";
-    CHECK(swage::Json::parse(outcome.out).at("out") == file.string());
+    CHECK(parse_json(outcome.out).at("out") == file.string());
     const Usda usd(bytes_of(file));
     CHECK(usd.text(".endTimeCode") == "4");
     const std::vector<float> there = usd.numbers("/small/work_piece.points", 4);

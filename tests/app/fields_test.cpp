@@ -3,9 +3,9 @@
 #include <cstring>
 
 #include "pipeline/frame_store.h"
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 using namespace swage;
@@ -87,7 +87,7 @@ TEST_CASE("pictures are coloured by a field, afterwards too, and of what the run
     const Outcome first = run(scene, out);
     INFO(first.err);
     REQUIRE(first.code == 0);
-    const Json drawn = Json::parse(bytes_of(out / "run.json"));
+    const Json drawn = parse_json(bytes_of(out / "run.json"));
     CHECK(drawn.at("drawing").at("color") == "stress");
     CHECK(drawn.at("drawing").at("color_range") == Json({0.0, 50e3}));
     const std::string colored = bytes_of(out / "frames/frame_0003.png");
@@ -136,7 +136,7 @@ TEST_CASE(
         const Outcome done = run(scene, to, {"--no-render", "--set", "material.name=" + material});
         INFO(done.err);
         REQUIRE(done.code == 0);
-        return std::pair(Json::parse(bytes_of(to / "run.json")).at("stages").at(0), done.err);
+        return std::pair(parse_json(bytes_of(to / "run.json")).at("stages").at(0), done.err);
     };
     const auto [rubber, of_rubber] = stage_of("rubber", out / "rubber");
     CHECK(rubber.at("use").empty());
@@ -159,9 +159,9 @@ TEST_CASE(
     CHECK(told.code == 0);
     CHECK(told.out.find("1-bend: used ") != std::string::npos);
     CHECK(run_swage({"info", scratch.path().string()}).code == 5);
-    Json damaged = Json::parse(bytes_of(out / "iron/run.json"));
+    Json damaged = parse_json(bytes_of(out / "iron/run.json"));
     damaged.at("stages").at(0).erase("frames");
-    put_text(out / "iron/run.json", damaged.dump());
+    put_text(out / "iron/run.json", json_text(damaged));
     const Outcome refused = run_swage({"info", (out / "iron").string()});
     CHECK(refused.code == 5);
     CHECK(refused.err.find("run.json: is damaged") != std::string::npos);

@@ -2,13 +2,12 @@
 // What `swage check` foretells of stages, and what a run then keeps of that.
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_write.h"
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 namespace {
 
@@ -22,11 +21,11 @@ struct Bar {
                             "\"\n[mold]\nacross = 2\n" + stages);
     }
     Outcome check() const { return run_swage({"check", scene.string()}); }
-    Json json() const { return Json::parse(run_swage({"check", scene.string(), "--json"}).out); }
+    Json json() const { return parse_json(run_swage({"check", scene.string(), "--json"}).out); }
     Outcome run() const {
         return run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
     }
-    Json record() const { return Json::parse(bytes_of(out / "run.json")); }
+    Json record() const { return parse_json(bytes_of(out / "run.json")); }
 
     const Scratch scratch;
     const fs::path scene = scratch.path() / "scene.toml", out = scratch.path() / "run";
@@ -62,10 +61,10 @@ TEST_CASE("a later stage that could not be set up at the body as molded is warne
     INFO(told);
     CHECK(count_of(told, "load_1 acts on nothing: ") == 1);
     CHECK(says(told, "(stage \"2-hold\", for the work-piece before the first stage)"));
-    CHECK(says(bar.json().at("cost").at("warnings").dump(), "load_1 acts on nothing"));
+    CHECK(says(json_text(bar.json().at("cost").at("warnings")), "load_1 acts on nothing"));
     const Outcome run = bar.run();
     CHECK(run.code == 3);
-    CHECK(says(bar.record().at("warnings").dump(), "load_1 acts on nothing"));
+    CHECK(says(json_text(bar.record().at("warnings")), "load_1 acts on nothing"));
 }
 
 TEST_CASE("what a run has disproved of the warnings of its start is not in its record") {
@@ -77,7 +76,7 @@ TEST_CASE("what a run has disproved of the warnings of its start is not in its r
     INFO(run.err);
     REQUIRE(run.code == 0);
     CHECK(says(run.err, "overhang = 21 cm is out of range"));
-    CHECK(!says(bar.record().at("warnings").dump(), "out of range"));
+    CHECK(!says(json_text(bar.record().at("warnings")), "out of range"));
 }
 
 TEST_CASE("what later machines say of the body as molded is told with their stages, and once") {
@@ -88,7 +87,7 @@ TEST_CASE("what later machines say of the body as molded is told with their stag
     INFO(told);
     CHECK(count_of(told, "the work-piece is short for this bend") == 1);
     CHECK(says(told, "2-bend and 3-bend: the work-piece is short for this bend"));
-    CHECK(says(bar.json().at("stages").at(1).at("notes").dump(), "short for this bend"));
+    CHECK(says(json_text(bar.json().at("stages").at(1).at("notes")), "short for this bend"));
 }
 
 TEST_CASE("a body that cannot reach the floor in its stage is told how long it would fall") {

@@ -2,14 +2,13 @@
 // What a run leaves when what it writes finds no room.
 #include <algorithm>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/app/small_disk.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 namespace {
 
@@ -47,7 +46,7 @@ TEST_CASE("what a run has reached is kept and can be drawn when its disk is whol
         CHECK(outcome.err.find("motion.bin: cannot be written: No space left") !=
               std::string::npos);
         CHECK(outcome.out.find(".part") == std::string::npos);
-        const Json record = Json::parse(bytes_of(scratch.path() / "record.json"), nullptr, false);
+        const Json record = parse_json(bytes_of(scratch.path() / "record.json"));
         REQUIRE(record.is_object());
         CHECK(record.at("state") == "stopped");
         CHECK(record.at("frames") > 10);
@@ -71,7 +70,7 @@ TEST_CASE("a stage that the disk is too full for leaves an account of what it di
         CHECK(outcome.err.find("motion.bin: cannot be written: File too large") !=
               std::string::npos);
     }
-    const Json record = Json::parse(bytes_of(run / "run.json"));
+    const Json record = parse_json(bytes_of(run / "run.json"));
     CHECK(record.at("state") == "stopped");
     const int frames = record.at("frames").get<int>();
     CHECK(frames > 10);

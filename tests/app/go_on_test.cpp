@@ -11,7 +11,6 @@
 #include "tests/shared/scratch.h"
 
 using namespace resumed;
-using swage::Json;
 
 namespace {
 
@@ -109,7 +108,7 @@ TEST_CASE("of a run that is done only what was changed is worked, to the same by
                    fmt::format("goes on after stage {} of {}, frame ", kept, stages.size())));
         done.check();
         CHECK_FALSE(fs::exists(done.out / "replaced"));
-        CHECK(Json::parse(bytes_of(done.out / "run.json")).at("went_on_from").at("stage") ==
+        CHECK(parse_json(bytes_of(done.out / "run.json")).at("went_on_from").at("stage") ==
               std::min(kept + 1, int(stages.size())));
     };
     const Stages &a = line.stages, &b = line.others;
@@ -219,7 +218,7 @@ TEST_CASE("a run that is replaced stays whole until the new one is") {
         CHECK(says(outcome, "the run that was there stands in " + replaced.string()));
     }
     CHECK(files_below(replaced) == before);
-    const Json record = Json::parse(bytes_of(done.out / "run.json"));
+    const Json record = parse_json(bytes_of(done.out / "run.json"));
     CHECK(record.at("state") == (signal == SIGINT ? "interrupted" : "begun"));
     CHECK(record.at("went_on_from") == Json({{"stage", 2}, {"frame", 4}}));
     CHECK(record.at("goes_on_from").at("stage") == 2);
@@ -315,10 +314,10 @@ TEST_CASE("that the run which is replaced has kept more that serves is told") {
         for (int n = stages + 1; n <= 3; ++n) {
             fs::remove(done.out / fmt::format("resume/after-{}.bin", n));
         }
-        Json record = Json::parse(bytes_of(done.out / "run.json"));
+        Json record = parse_json(bytes_of(done.out / "run.json"));
         record["state"] = "interrupted";
         record["stages"].erase(record["stages"].begin() + stages, record["stages"].end());
-        put_text(done.out / "run.json", record.dump());
+        put_text(done.out / "run.json", json_text(record));
     };
     const std::string told =
         "replaced has kept more stages that are the same ({} instead of {}): "

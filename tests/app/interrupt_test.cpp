@@ -8,13 +8,12 @@
 #include <thread>
 
 #include "base/process.h"
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 using Clock = std::chrono::steady_clock;
 
 namespace {
@@ -89,7 +88,7 @@ TEST_CASE("frames that were finished before a run was asked to stop can be drawn
     CHECK(outcome.code == 128 + signal);
     CHECK(outcome.err.find("frames are finished") != std::string::npos);
     check_only_whole_files(run);
-    const Json record = Json::parse(bytes_of(run / "run.json"));
+    const Json record = parse_json(bytes_of(run / "run.json"));
     CHECK(record["state"] == "interrupted");
     CHECK(record["frames"] >= 4);
     CHECK(record["frames"] < 5001);
@@ -116,7 +115,7 @@ TEST_CASE("finished frames are kept though a plot hangs, which ends with the run
     CHECK(outcome.code == 128 + SIGINT);
     check_only_whole_files(run);
     REQUIRE(fs::exists(run / "run.json"));
-    const Json record = Json::parse(bytes_of(run / "run.json"));
+    const Json record = parse_json(bytes_of(run / "run.json"));
     CHECK(record["state"] == "interrupted");
     CHECK(record["frames"] == 4);  // those of the first stage, and none of the second
     const Outcome render = run_swage({"render", run.string(), "--frames", "4"});
@@ -145,7 +144,7 @@ TEST_CASE("a run that is asked to stop while its last plot is drawn is not done"
     CHECK(outcome.code == 128 + SIGINT);
     check_only_whole_files(run);
     REQUIRE(fs::exists(run / "run.json"));
-    CHECK(Json::parse(bytes_of(run / "run.json"))["state"] == "simulated");
+    CHECK(parse_json(bytes_of(run / "run.json"))["state"] == "simulated");
     if (!swage::program_exists("gnuplot")) return;
     CHECK(run_swage({"run", scene.string(), "--no-render", "--out", run.string()}).code == 0);
     CHECK(fs::exists(run / "curves/1-bend.svg"));
@@ -167,7 +166,7 @@ TEST_CASE("who asks a run to end by two signals at a time, as timeout does, asks
     INFO(outcome.err);
     CHECK(outcome.code == 128 + SIGTERM);
     REQUIRE(fs::exists(run / "run.json"));
-    CHECK(Json::parse(bytes_of(run / "run.json"))["state"] == "interrupted");
+    CHECK(parse_json(bytes_of(run / "run.json"))["state"] == "interrupted");
     CHECK(fs::exists(run / "motion.bin"));
 }
 

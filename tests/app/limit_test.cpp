@@ -3,13 +3,12 @@
 #include <cmath>
 #include <sstream>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 namespace {
 
@@ -77,7 +76,7 @@ TEST_CASE("a bar that is bent until a moment springs back from there, and no row
     CHECK(outcome.err.find("1-bend: " + told) != std::string::npos);
     CHECK(outcome.err.find("1-bend: left reached a torque of 30 N m at ") != std::string::npos);
     CHECK(outcome.err.find(", and stops there") != std::string::npos);
-    const Json record = Json::parse(bytes_of(out / "run.json")).at("stages").at(0);
+    const Json record = parse_json(bytes_of(out / "run.json")).at("stages").at(0);
     const Json stopped = record.at("stopped_at");
     CHECK(record.at("limits").at(0).at("torque_N_m") == 30);
     CHECK(stopped.at("part") == "left");
@@ -127,7 +126,7 @@ TEST_CASE("presses of rising force each press farther, to the same bytes however
     const Outcome outcome = run(scene, out, {"--threads", "1"});
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
-    const Json record = Json::parse(bytes_of(out / "run.json"));
+    const Json record = parse_json(bytes_of(out / "run.json"));
     double depth = 0;
     for (const auto& [name, most] : {std::pair("1-press", 18e3), std::pair("2-press", 30e3)}) {
         auto column = columns_of(out / "curves" / (std::string(name) + ".csv"));
@@ -151,7 +150,7 @@ TEST_CASE("presses of rising force each press farther, to the same bytes however
     const fs::path twice = scratch.path() / "twice";
     const Outcome two = run(scene, twice, {"--threads", "2"});
     CHECK(two.code == 0);
-    CHECK(record.at("state_hash") == Json::parse(bytes_of(twice / "run.json")).at("state_hash"));
+    CHECK(record.at("state_hash") == parse_json(bytes_of(twice / "run.json")).at("state_hash"));
     for (const char* name : {"1-press", "2-press", "3-press"}) {
         const fs::path table = fs::path("curves") / (std::string(name) + ".csv");
         CHECK((bytes_of(out / table) == bytes_of(twice / table)));

@@ -2,13 +2,12 @@
 #include <sstream>
 
 #include "base/text.h"
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 TEST_CASE("a machine's parameters are told with the unit of a number that has none") {
     const Scratch scratch;
@@ -22,7 +21,7 @@ TEST_CASE("a machine's parameters are told with the unit of a number that has no
     const Outcome table = run_swage({"machines", "mine.toml"}, scratch.path());
     REQUIRE(table.code == 0);
     const Json json =
-        Json::parse(run_swage({"machines", "mine.toml", "--json"}, scratch.path()).out);
+        parse_json(run_swage({"machines", "mine.toml", "--json"}, scratch.path()).out);
     for (const Json& parameter : json.at("parameters")) {
         const auto name = parameter.at("name").get<std::string>();
         const auto unit = parameter.at("unit").get<std::string>();

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 TEST_CASE("what is told of a material is a material that a scene may give") {
     const Scratch scratch;
@@ -14,7 +13,7 @@ TEST_CASE("what is told of a material is a material that a scene may give") {
              "back_stress = \"80 MPa\"\nback_strain = 0.02\nstickiness = \"3 kPa\"\n");
     const Outcome list = run_swage({"materials", "--json"}, scratch.path());
     REQUIRE(list.code == 0);
-    const Json all = Json::parse(list.out);
+    const Json all = parse_json(list.out);
     CHECK(all.size() >= 33);
     const std::string table = run_swage({"materials"}, scratch.path()).out;
     const fs::path scene = put_small_scene(scratch.path());
@@ -41,7 +40,7 @@ TEST_CASE("what is told of a material is a material that a scene may give") {
             INFO(run.err);
             REQUIRE(run.code == 0);
             Json told =
-                Json::parse(bytes_of(scratch.path() / out / "run.json"))["bodies"][0]["materials"];
+                parse_json(bytes_of(scratch.path() / out / "run.json"))["bodies"][0]["materials"];
             told[0].erase("name");
             return told;
         };
@@ -56,7 +55,7 @@ TEST_CASE("how a material looks is told as a scene may give it") {
     CHECK(copper.find("look = {color = [0.93, 0.66, 0.54], roughness = 0.3, metalness = 1, clear = "
                       "0}\n") != std::string::npos);
     const Outcome told = run_swage({"materials", "glass", "--json"}, scratch.path());
-    const Json look = Json::parse(told.out).at("look");
+    const Json look = parse_json(told.out).at("look");
     CHECK(look.at("clear").get<double>() > 0.5);
     CHECK(look.at("color").at(1).get<double>() == Approx(0.98));
 }

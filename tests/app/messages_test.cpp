@@ -6,13 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 namespace {
 
@@ -41,7 +40,7 @@ TEST_CASE("run tells what keeps it from running as JSON, as check does") {
         INFO(ran.out << ran.err);
         CHECK(ran.code == checked.code);
         CHECK(ran.code != 0);
-        const Json told = Json::parse(ran.out), wanted = Json::parse(checked.out);
+        const Json told = parse_json(ran.out), wanted = parse_json(checked.out);
         CHECK(told.at("mistakes") == wanted.at("mistakes"));
         CHECK(told.at("file") == wanted.at("file"));
         CHECK_FALSE(told.at("mistakes").empty());
@@ -100,7 +99,7 @@ TEST_CASE("a scene is read from standard input, its paths from the working direc
         return in_shell("swage run " + from + " --no-render --out run" + more, scratch.path());
     };
     REQUIRE(run("-", " <" + name).code == 0);
-    const Json piped = Json::parse(bytes_of(scratch.path() / "run/run.json"));
+    const Json piped = parse_json(bytes_of(scratch.path() / "run/run.json"));
     CHECK(piped.at("scene") == "stdin");
     // It is the same run as that of the file, and another once the scene is another.
     CHECK(run(name, "").err.find("already complete") != std::string::npos);
@@ -217,12 +216,12 @@ TEST_CASE("info repeats what a run warned of") {
     const fs::path scene = put_small_scene(scratch.path(), 1), run = scratch.path() / "run";
     const auto info = [&] { return run_swage({"info", run.string()}).out; };
     REQUIRE(run_swage({"run", scene.string(), "--no-render", "--out", run.string()}).code == 0);
-    Json record = Json::parse(bytes_of(run / "run.json"));
+    Json record = parse_json(bytes_of(run / "run.json"));
     record["warnings"] = {"1-bend: it slipped", "2-cut: it missed"};
-    put_text(run / "run.json", record.dump());
+    put_text(run / "run.json", json_text(record));
     CHECK(info().find("  warning      1-bend: it slipped\n  warning      2-cut: it missed\n") !=
           std::string::npos);
     record["warnings"] = 3;
-    put_text(run / "run.json", record.dump());
+    put_text(run / "run.json", json_text(record));
     CHECK(run_swage({"info", run.string()}).code == 5);
 }

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "base/process.h"
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 using namespace swage;
@@ -29,7 +29,7 @@ TEST_CASE("what other programs could not make is on record, and made once they a
         return run_swage({"run", scene.string(), "--out", out.string()}, scratch.path(), set);
     };
     CHECK(run({{"PATH", "/nonexistent"}}).code == 0);
-    const Json record = Json::parse(bytes_of(out / "run.json"));
+    const Json record = parse_json(bytes_of(out / "run.json"));
     CHECK(holds(record.at("plots").at("warnings"), "gnuplot"));
     CHECK(fs::exists(out / "curves/1-bend.gp"));
     CHECK(holds(record.at("drawing").at("warnings"), "no film"));
@@ -45,7 +45,7 @@ TEST_CASE("what other programs could not make is on record, and made once they a
     CHECK(fs::exists(out / "film.mp4"));
     CHECK(fs::exists(out / "curves/1-bend.svg"));
     CHECK_FALSE(fs::exists(out / "curves/1-bend.gp"));
-    const Json now = Json::parse(bytes_of(out / "run.json"));
+    const Json now = parse_json(bytes_of(out / "run.json"));
     CHECK(now.at("drawing").at("warnings").empty());
     CHECK(now.at("plots").at("warnings").empty());
     CHECK(now.at("state") == "complete");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frame rates, numbers and cameras as film productions want them.
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 #include "tests/shared/usda.h"
 
@@ -10,9 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-swage::Json record_of(const fs::path& run) {
-    return swage::Json::parse(bytes_of(run / "run.json"));
-}
+Json record_of(const fs::path& run) { return parse_json(bytes_of(run / "run.json")); }
 
 }  // namespace
 
@@ -34,9 +32,9 @@ TEST_CASE("a run at 23.976 from frame 1001 on is so in names, film, times and US
     CHECK_FALSE(fs::exists(run / "frames/frame_1005.png"));
     CHECK(fs::exists(run / "meshes/1-bend/frame_1001.obj"));
     CHECK(fs::exists(run / "meshes/1-bend/frame_1004.ply"));
-    const swage::Json record = record_of(run);
+    const Json record = record_of(run);
     CHECK(record.at("render").at("first_frame") == 1001);
-    CHECK(record.at("render").at("frame_rate") == swage::Json{24000, 1001});
+    CHECK(record.at("render").at("frame_rate") == Json{24000, 1001});
     CHECK(record.at("stages").at(0).at("duration_s").get<double>() == 3 / (24000 / 1001.0));
     CHECK(run_swage({"run", scene.string(), "--out", run.string()}).err.find("already complete") !=
           std::string::npos);
@@ -81,8 +79,8 @@ TEST_CASE("a run whose scene says nothing of numbers has none of them in run.jso
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 1), run = scratch.path() / "run";
     REQUIRE(run_swage({"run", scene.string(), "--out", run.string(), "--no-render"}).code == 0);
-    const swage::Json render = record_of(run).at("render");
-    CHECK(render.at("frames_per_second").dump() == "30");
+    const Json render = record_of(run).at("render");
+    CHECK(json_text(render.at("frames_per_second")) == "30\n");
     CHECK_FALSE(render.contains("frame_rate"));
     CHECK_FALSE(render.contains("first_frame"));
 }

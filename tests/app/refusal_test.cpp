@@ -2,13 +2,12 @@
 // What the program says where it is given too little, or what nobody can use.
 #include <sys/resource.h>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 namespace {
 
@@ -46,7 +45,7 @@ TEST_CASE("a damaged record of a run is refused with 5, and --fresh makes anothe
     REQUIRE(again("--quiet").code == 0);
     const std::string whole = bytes_of(record);
     const auto damaged = [&](const char* key, const Json& value) {
-        Json json = Json::parse(whole);
+        Json json = parse_json(whole);
         json[key] = value;
         return swage::json_text(json);
     };
@@ -61,7 +60,7 @@ TEST_CASE("a damaged record of a run is refused with 5, and --fresh makes anothe
         CHECK(bytes_of(record) == text);
     }
     CHECK(again("--fresh").code == 0);
-    CHECK(Json::parse(bytes_of(record)).at("frames") == 2);
+    CHECK(parse_json(bytes_of(record)).at("frames") == 2);
 }
 
 TEST_CASE("what cannot be a run's folder is told to be that, not to be full") {
@@ -82,10 +81,10 @@ TEST_CASE("a run of another build is not taken for this one's, and can be drawn 
     };
     REQUIRE(again("--quiet").code == 0);
     CHECK(says(again("--threads=1"), "already complete"));
-    const std::string build = Json::parse(bytes_of(run / "run.json")).at("build");
+    const std::string build = parse_json(bytes_of(run / "run.json")).at("build");
     CHECK(run_swage({"--version"}).out.find(build) != std::string::npos);
     for (const bool is_old : {false, true}) {  // of one that named no build, too
-        Json json = Json::parse(bytes_of(mark));
+        Json json = parse_json(bytes_of(mark));
         REQUIRE(json.at("build") == build);
         json["build"] = "0123456789ab";
         if (is_old) json.erase("build");

@@ -2,9 +2,9 @@
 // Where a run that is drawn once more goes, and where it does not.
 #include <set>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
@@ -198,7 +198,7 @@ TEST_CASE("a run is not complete until its passes are there") {
     // What check told of the disk has it.
     const auto disk = [&](std::vector<std::string> more) {
         more.insert(more.begin(), {"check", scene.string(), "--json"});
-        return swage::Json::parse(run_swage(more).out).at("cost").at("disk_bytes").get<double>();
+        return parse_json(run_swage(more).out).at("cost").at("disk_bytes").get<double>();
     };
     CHECK(disk({}) - disk({"--set", "render.passes=[]"}) > 2 * double(fs::file_size(depth)));
     fs::remove(depth);
@@ -213,7 +213,7 @@ TEST_CASE("a drawing tells which view it chose for angles that nobody gave") {
         const Outcome outcome = drawable.draw(drawable.out(), more);
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
-        return swage::Json::parse(outcome.out).value("view", swage::Json());
+        return parse_json(outcome.out).value("view", Json());
     };
     const auto chosen = view({});
     CHECK(chosen.at("seen").get<double>() > 0.5);

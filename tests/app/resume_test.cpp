@@ -6,7 +6,6 @@
 #include <chrono>
 #include <thread>
 
-#include "pipeline/json.h"
 #include "tests/app/resumed_run.h"
 #include "tests/app/small_disk.h"
 #include "tests/catch.h"
@@ -14,7 +13,6 @@
 
 namespace fs = std::filesystem;
 using namespace resumed;
-using swage::Json;
 
 namespace {
 
@@ -98,7 +96,7 @@ TEST_CASE("a run that was killed or interrupted within a stage goes on from the 
         const Outcome ended = end_in_second_stage(signal, scene, out);
         INFO(ended.err);
         if (signal == SIGINT) {
-            CHECK(Json::parse(bytes_of(out / "run.json")).at("state") == "interrupted");
+            CHECK(parse_json(bytes_of(out / "run.json")).at("state") == "interrupted");
             CHECK(ended.err.find("swage run goes on after stage 1 of 2") != std::string::npos);
             CHECK_FALSE(fs::exists(out / "resume/motion.bin"));
         }

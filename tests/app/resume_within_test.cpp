@@ -12,7 +12,6 @@
 #include "tests/shared/scratch.h"
 
 using namespace resumed;
-using swage::Json;
 
 namespace {
 
@@ -63,7 +62,7 @@ void check_goes_on(const std::string& text, const std::vector<int>& frames) {
         check_told(outcome);
         last = frame - 1;
         CHECK(fs::exists(out / "resume/stage.bin"));
-        const Json record = Json::parse(bytes_of(out / "run.json"));
+        const Json record = parse_json(bytes_of(out / "run.json"));
         CHECK(record.at("goes_on_from").at("frame") == *last);
         CHECK(outcome.err.find(fmt::format("swage run goes on from frame {}, in stage ", *last)) !=
               std::string::npos);
@@ -256,7 +255,7 @@ TEST_CASE("a run that was killed goes on from the last frame that was kept") {
         CHECK(ended.code == 128 + signal);
         CHECK(fs::exists(out / "resume/stage.bin"));
         CHECK((frame == 6 || ended.err.find("goes on from frame ") != std::string::npos));
-        const Json record = Json::parse(bytes_of(out / "run.json"));
+        const Json record = parse_json(bytes_of(out / "run.json"));
         CHECK(record.at("state") == (signal == SIGKILL ? "begun" : "interrupted"));
         CHECK(record.at("goes_on_from").at("stage") == 1);
         CHECK(record.at("goes_on_from").at("frame") >= frame - 1);

@@ -11,9 +11,9 @@
 
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_write.h"
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 
 namespace resumed {
 
@@ -65,10 +65,10 @@ inline Outcome run(const fs::path& scene, const fs::path& out, std::vector<std::
 inline std::map<std::string, std::string> products(const fs::path& folder) {
     std::map<std::string, std::string> files = files_below(folder);
     std::erase_if(files, [](const auto& file) { return file.first.starts_with("resume/after-"); });
-    swage::Json record = swage::Json::parse(files.at("run.json"));
+    Json record = parse_json(files.at("run.json"));
     record["seconds"] = nullptr;
     record.erase("went_on_from");
-    files["run.json"] = record.dump(1);
+    files["run.json"] = json_text(record);
     return files;
 }
 

@@ -4,13 +4,12 @@
 
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 namespace {
 
@@ -28,7 +27,7 @@ Outcome run_with_bar(const fs::path& folder, const std::string& text) {
 }
 
 std::string state_hash(const fs::path& run) {
-    return Json::parse(bytes_of(run / "run.json")).at("state_hash").get<std::string>();
+    return parse_json(bytes_of(run / "run.json")).at("state_hash").get<std::string>();
 }
 
 }  // namespace
@@ -49,8 +48,8 @@ TEST_CASE(
     for (const char* name : {"meshes/1-bend.obj", "meshes/1-bend.ply", "curves/1-bend.csv"}) {
         CHECK(fs::file_size(run / name) > 100);
     }
-    const Json record = Json::parse(bytes_of(run / "run.json"));
-    CHECK(Json::parse(first.out) == record);
+    const Json record = parse_json(bytes_of(run / "run.json"));
+    CHECK(parse_json(first.out) == record);
     CHECK(record.at("state") == "complete");
     CHECK(record.at("frames") == 4);
     CHECK(record.at("bodies").at(0).at("matter").at("cells") == 40);
@@ -73,7 +72,7 @@ TEST_CASE(
         CHECK(name.find(".part") == std::string::npos);
         CHECK(name != ".swage-lock");
     }
-    const Json told = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    const Json told = parse_json(run_swage({"check", scene.string(), "--json"}).out);
     CHECK(told.at("cost").at("disk_bytes").get<std::size_t>() > bytes_there);
     CHECK(told.at("cost").at("disk_bytes").get<std::size_t>() < 2 * bytes_there);
 
@@ -85,18 +84,18 @@ TEST_CASE(
 
     // One whose drawing was cut short is then as it would have been without: nothing is drawn.
     const std::string complete = before.at("run.json");
-    Json undrawn = Json::parse(complete);
+    Json undrawn = parse_json(complete);
     undrawn["state"] = "simulated";
     undrawn.erase("plots");  // what is told last
-    put_text(run / "run.json", undrawn.dump());
+    put_text(run / "run.json", json_text(undrawn));
     const Outcome not_drawn =
         run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
     CHECK(not_drawn.code == 0);
     CHECK(not_drawn.err.find("already complete") == std::string::npos);
     CHECK(not_drawn.err.find("already simulated") != std::string::npos);
-    const Json ended = Json::parse(bytes_of(run / "run.json"));
+    const Json ended = parse_json(bytes_of(run / "run.json"));
     CHECK(ended.at("state") == "complete");
-    CHECK(ended.at("plots") == Json::parse(complete).at("plots"));
+    CHECK(ended.at("plots") == parse_json(complete).at("plots"));
     put_text(run / "run.json", complete);
 
     // Lost pictures come back as they were, without simulating again.
@@ -220,7 +219,7 @@ TEST_CASE("the books of each stage close by what run.json says of it") {
                   scratch.path());
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
-    const Json stages = Json::parse(outcome.out).at("stages");
+    const Json stages = parse_json(outcome.out).at("stages");
     CHECK(stages.at(1).at("energies_J").at("elastic_at_start") > 0);
     for (const Json& stage : stages) {
         CHECK(stage.at("state") == "complete");
@@ -254,7 +253,7 @@ TEST_CASE("how often a run is looked at does not change what its machine does") 
             run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
-        return Json::parse(bytes_of(run / "run.json")).at("stages").at(0).at("energies_J");
+        return parse_json(bytes_of(run / "run.json")).at("stages").at(0).at("energies_J");
     };
     // It leaves the straight on the way, by as soft a motion as there is: however it comes there.
     // The later it does, the more it leaps, and the more work is lost in that: the remainder.
@@ -277,7 +276,7 @@ TEST_CASE("the option --set goes over what the scene says") {
                    "mold.across=3", "--set", "stage.1.frames=2", "--json", "--quiet"});
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
-    const Json record = Json::parse(outcome.out);
+    const Json record = parse_json(outcome.out);
     CHECK(record.at("bodies").at(0).at("matter").at("cells") == 135);
     CHECK(record.at("frames") == 3);
     CHECK(record.at("overrides").size() == 2);
@@ -372,7 +371,7 @@ TEST_CASE("what comes in several legs of a frame is told of that frame once") {
                      "gravity_strength = \"cos(2*pi*4*t)\"\nframes = 4\nduration = \"0.01 s\"\n");
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
-    CHECK(Json::parse(bytes_of(run / "run.json")).at("stages").at(0).at("legs") > 8);
+    CHECK(parse_json(bytes_of(run / "run.json")).at("stages").at(0).at("legs") > 8);
     CHECK(outcome.err.find("1-floor, 4 frames from 2 on: the drag is so strong") !=
           std::string::npos);
 }
@@ -400,7 +399,7 @@ TEST_CASE("the first row of the curves is the start, with what is known of it") 
     const auto at_start = [&](const char* name) {
         return start.at(std::size_t(std::find(names.begin(), names.end(), name) - names.begin()));
     };
-    const double mass = Json::parse(bytes_of(run / "run.json"))
+    const double mass = parse_json(bytes_of(run / "run.json"))
                             .at("bodies")
                             .at(0)
                             .at("matter")

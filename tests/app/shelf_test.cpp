@@ -3,13 +3,12 @@
 #include <cmath>
 #include <sstream>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 namespace {
 
@@ -89,7 +88,7 @@ TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
     CHECK(sunk(10) == Approx(mean_sag(weight, 147.15)).epsilon(0.01));
     CHECK(row[10].at("left force y [N]") == Approx(0.5 * (weight + 147.15)).epsilon(0.02));
     CHECK(row[10].at("gravity force y [N]") == Approx(-weight).epsilon(0.001));
-    const Json energy = Json::parse(bytes_of(run / "run.json")).at("stages").at(0).at("energies_J");
+    const Json energy = parse_json(bytes_of(run / "run.json")).at("stages").at(0).at("energies_J");
     const double work =
         energy.at("load_work").get<double>() + energy.at("gravity_work").get<double>();
     CHECK(energy.at("elastic").get<double>() == Approx(work).epsilon(0.05));

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 
-#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
-using swage::Json;
 
 TEST_CASE("a stage that cannot begin leaves what those before it have done") {
     const Scratch scratch;
@@ -24,7 +23,7 @@ TEST_CASE("a stage that cannot begin leaves what those before it have done") {
     INFO(outcome.err);
     CHECK(outcome.code == 7);
     REQUIRE(fs::exists(run / "run.json"));
-    CHECK(Json::parse(bytes_of(run / "run.json")).at("frames") == 4);
+    CHECK(parse_json(bytes_of(run / "run.json")).at("frames") == 4);
     CHECK(is_whole_png(bytes_of(run / "frames/frame_0004.png")));
     CHECK(run_swage({"render", run.string(), "--no-film"}).code == 0);
 }
@@ -44,7 +43,7 @@ TEST_CASE("where one of the bodies cannot be molded anew, all stay as they were"
         run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
     INFO(outcome.err);
     CHECK(outcome.code == 7);
-    const Json record = Json::parse(bytes_of(run / "run.json"));
+    const Json record = parse_json(bytes_of(run / "run.json"));
     CHECK(record.at("state_hash") == record.at("stages").at(0).at("state_hash"));
 }
 
@@ -66,7 +65,7 @@ TEST_CASE("a run that wants for memory on its way keeps the frames that it has f
     CHECK(outcome.err.find("not enough memory; a larger [mold] spacing needs less") !=
           std::string::npos);
     REQUIRE(fs::exists(run / "run.json"));
-    const Json record = Json::parse(bytes_of(run / "run.json"));
+    const Json record = parse_json(bytes_of(run / "run.json"));
     CHECK(record.at("state") == "stopped");
     CHECK(record.at("frames") == 4);
     CHECK(run_swage({"render", run.string(), "--no-film", "--frames", "4"}).code == 0);
@@ -119,7 +118,7 @@ TEST_CASE("a later machine that cannot be set up leaves what was done, and is to
     CHECK(outcome.err.find("small.toml:16:10: machine bend: radius = 1 um is out of range") !=
           std::string::npos);
     CHECK(fs::exists(run / "frames/frame_0003.png"));
-    const Json record = Json::parse(bytes_of(run / "run.json"));
+    const Json record = parse_json(bytes_of(run / "run.json"));
     CHECK(record["state"] == "stopped");
     CHECK(record["frames"] == 3);
 }
@@ -139,9 +138,9 @@ TEST_CASE(
         run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--json"});
     INFO(outcome.err);
     REQUIRE(outcome.err.find("1-twist, frame 2: twist: no equilibrium found") != std::string::npos);
-    const Json record = Json::parse(bytes_of(run / "run.json"));
+    const Json record = parse_json(bytes_of(run / "run.json"));
     CHECK(record.at("frames") == 1);
-    CHECK(Json::parse(outcome.out) == record);
+    CHECK(parse_json(outcome.out) == record);
     const Json& stage = record.at("stages").at(0);
     CHECK(stage.at("state") == "stopped");
     CHECK(stage.at("frames") == Json({2, 2}));
@@ -164,7 +163,7 @@ TEST_CASE("a fresh run that cannot start leaves the run that was there, one that
     CHECK(go({"--fresh", "--set", "stage.1.radius=1 um"}) == 3);
     CHECK(files_below(run) == before);
     CHECK(go({"--fresh", "--set", "stage.1.frames=1"}) == 0);
-    CHECK(Json::parse(bytes_of(run / "run.json")).at("frames") == 2);
+    CHECK(parse_json(bytes_of(run / "run.json")).at("frames") == 2);
 }
 
 TEST_CASE("a run that failed before its first frame does not keep the mended one out") {

@@ -6,6 +6,7 @@
 #include "sim/cell_volume.h"
 #include "skin/divided_mesh.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/lattice_fixture.h"
 #include "tests/shared/meshes.h"
 

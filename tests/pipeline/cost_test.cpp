@@ -17,6 +17,7 @@
 #include "skin/boundary.h"
 #include "skin/divided_mesh.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 using namespace swage;

@@ -5,6 +5,7 @@
 #include "tests/catch.h"
 #include "tests/scene/scene_folder.h"
 #include "tests/shared/block.h"
+#include "tests/shared/json.h"
 
 using namespace swage;
 

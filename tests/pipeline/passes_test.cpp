@@ -6,12 +6,12 @@
 
 #include "geometry/box_mesh.h"
 #include "pipeline/draw.h"
-#include "pipeline/json.h"
 #include "pipeline/render_directory.h"
 #include "render/image_read.h"
 #include "tests/catch.h"
 #include "tests/render/drawn.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/json.h"
 #include "tests/shared/meshes.h"
 #include "tests/shared/scratch.h"
 
@@ -75,7 +75,7 @@ TEST_CASE("every pixel of a matte is of one of those that its table names") {
     const TwoStages run;
     run.draw();
     const Json table =
-        Json::parse(test::bytes_of(run.files().table(PicturePass::matte))).at("mattes");
+        parse_json(test::bytes_of(run.files().table(PicturePass::matte))).at("mattes");
     std::map<Color, std::string> name;
     for (const Json& one : table) {
         const std::string of_stage =
@@ -155,7 +155,7 @@ TEST_CASE(
     }
     run.draw();
     const Json pieces =
-        Json::parse(test::bytes_of(run.files().table(PicturePass::piece))).at("pieces");
+        parse_json(test::bytes_of(run.files().table(PicturePass::piece))).at("pieces");
     std::vector<Color> color;
     for (const Json& one : pieces) {
         if (one.at("is") != "piece") continue;
@@ -187,7 +187,7 @@ TEST_CASE(
     run.settings.first_frame = 1001;
     Stopwatch watch;
     draw_run(FrameStore(run.store()), run.settings, {1, 1}, late, watch, run.names);
-    const Json then = Json::parse(test::bytes_of(late.table(PicturePass::piece))).at("pieces");
+    const Json then = parse_json(test::bytes_of(late.table(PicturePass::piece))).at("pieces");
     std::vector<int> from;
     for (const Json& one : then) {
         if (one.at("is") == "piece") from.push_back(one.at("from_frame"));
