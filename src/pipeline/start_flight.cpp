@@ -26,9 +26,7 @@ double start_flight(const StageSpec& stage, const Machine& machine,
     std::vector<Flyer> flying;
     for (const NamedMatter& body : bodies) {
         const Aggregate& matter = *body.matter;
-        Vec3Array force;
-        force.resize(matter.particle_count());
-        const std::optional<Vec3> velocity = flight_velocity(matter, force, step);
+        const std::optional<Vec3> velocity = flight_velocity(matter, step);  // molded unstrained
         if (!velocity) return 0;
         flying.push_back({&position.emplace_back(matter.particle_position), matter.lattice.spacing,
                           &touch.emplace_back(matter), *velocity});

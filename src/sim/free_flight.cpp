@@ -12,7 +12,7 @@ namespace swage {
 
 namespace {
 
-constexpr double kNothing = 1e-9;  // spacings
+constexpr double kRoundings = 100;  // as much as one leaves, of many steps that add up
 
 // What the body has surely left to go to a tool, whichever way [m].
 double sure_gap(const Tool& tool, const Pose& world_from_tool, const Flyer& body) {
@@ -62,21 +62,44 @@ double time_for(double way, double speed, double acceleration) {
 
 }  // namespace
 
-std::optional<Vec3> flight_velocity(const Aggregate& matter, const Vec3Array& force, double step) {
+double rounding_energy(const Aggregate& matter, double step) {
+    const double moved = std::numeric_limits<double>::epsilon() / step;
+    return chunked_sum(matter.particle_count(), [&](std::size_t p) {
+        return matter.particle_mass[p] * moved * moved *
+               matter.particle_position.at(p).squaredNorm();
+    });
+}
+
+double elastic_rounding(const Aggregate& matter) {
+    double modulus = 0;  // [J/kg]
+    for (std::size_t n = 0; n < matter.material_count(); ++n) {
+        const Material& material = matter.material_at(n);
+        if (material.elasticity == Elasticity::hencky) continue;
+        modulus = std::max(modulus, material.young_modulus / material.density);
+    }
+    return std::numeric_limits<double>::epsilon() * modulus * matter.mass();
+}
+
+bool holds_strain(const Aggregate& matter, double elastic, double step) {
+    return !(elastic <= kRoundings * rounding_energy(matter, step) + elastic_rounding(matter));
+}
+
+std::optional<Vec3> flight_velocity(const Aggregate& matter, double step) {
     const Vec3Array& v = matter.particle_velocity;
-    const double most = kNothing * matter.lattice.spacing / step;
     const Vec3 first = v.at(0);
     Vec3 momentum = Vec3::Zero();
     double mass = 0;
     for (std::size_t p = 0; p < v.size(); ++p) {
-        const double m = matter.particle_mass[p];
-        const bool alike =
-            (v.at(p) - first).norm() <= most && step * force.at(p).norm() <= most * m;
-        if (!alike) return std::nullopt;
-        momentum += m * (v.at(p) - first);
-        mass += m;
+        momentum += matter.particle_mass[p] * (v.at(p) - first);
+        mass += matter.particle_mass[p];
     }
-    return first + momentum / mass;
+    const Vec3 aside = momentum / mass;
+    const double kinetic =
+        0.5 * chunked_sum(v.size(), [&](std::size_t p) {
+            return matter.particle_mass[p] * (v.at(p) - first - aside).squaredNorm();
+        });
+    if (!(kinetic <= kRoundings * rounding_energy(matter, step))) return std::nullopt;
+    return first + aside;
 }
 
 double free_time(const std::vector<Flyer>& bodies, const Apparatus& apparatus, const Drive& from,

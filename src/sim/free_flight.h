@@ -18,9 +18,18 @@ namespace swage {
 
 inline constexpr double kWorthFlying = 512;  // steps that it takes otherwise; fewer are soon over
 
-// Of matter that flies: in a step of this length [s], which its swings allow, neither forces nor
-// speeds take any particle a billionth of a spacing aside from the others. [m/s]
-std::optional<Vec3> flight_velocity(const Aggregate& matter, const Vec3Array& force, double step);
+// What rounding its places leaves of energy in matter that takes steps of this length [s]: twice as
+// much as it does to places, were the steps the longest that are stable [J].
+double rounding_energy(const Aggregate& matter, double step);
+// The same by which elastic energy alone may be wrong: that of rubber and foam is a difference of
+// terms of the size of their modulus [J].
+double elastic_rounding(const Aggregate& matter);
+
+// Matter flies where neither its elastic energy [J] nor what its particles have beside their mean
+// velocity is more than rounding leaves; what is more may be a slow swing or spin, which steps
+// would follow.
+bool holds_strain(const Aggregate& matter, double elastic, double step);
+std::optional<Vec3> flight_velocity(const Aggregate& matter, double step);  // [m/s]
 
 struct Flyer {
     const Vec3Array* position;  // of its particles [m]

@@ -106,7 +106,7 @@ void MovingBodies::wake(std::size_t b, MoveOutcome& outcome) {
     body_[b].begin_block(outcome.body[b]);
 }
 
-std::vector<Flyer> MovingBodies::flyers() const {
+std::vector<Flyer> MovingBodies::flyers() {
     std::vector<Flyer> all;
     for (std::size_t b = 0; b < body_.size(); ++b) {
         const std::optional<Vec3> velocity =
@@ -119,7 +119,7 @@ std::vector<Flyer> MovingBodies::flyers() const {
     return all;
 }
 
-double MovingBodies::free_time(const Drive& from, const Drive& to, const Drive& now) const {
+double MovingBodies::free_time(const Drive& from, const Drive& to, const Drive& now) {
     if (from.gravity_strength != to.gravity_strength) return 0;
     const std::vector<Flyer> flying = flyers();
     if (flying.empty()) return 0;

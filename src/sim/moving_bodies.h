@@ -69,7 +69,7 @@ class MovingBodies {
 
     // How long they fly from here, on the way from one drive to another, before any can touch
     // anything; 0: not all do [s].
-    double free_time(const Drive& from, const Drive& to, const Drive& now) const;
+    double free_time(const Drive& from, const Drive& to, const Drive& now);
     // They fly, and the speeds go on from there by a step of this length [s].
     void fly(const Drive& before, const Drive& now, double step, MoveOutcome& outcome);
 
@@ -101,7 +101,7 @@ class MovingBodies {
     // Adds what bodies in contact do to each other in a step of this length [s] from here.
     void meet(const Drive& now, double step, Meet how, MoveOutcome& outcome);
     void wake(std::size_t body, MoveOutcome& outcome);
-    std::vector<Flyer> flyers() const;  // none: not all fly
+    std::vector<Flyer> flyers();  // none: not all fly
     void wake_neighbours(const Drive& now, MoveOutcome& outcome);
 
     const Apparatus& apparatus_;

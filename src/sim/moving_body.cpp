@@ -181,9 +181,11 @@ double MovingBody::move(double kick, double step) {
     return step * std::sqrt(most);
 }
 
-std::optional<Vec3> MovingBody::flight_velocity() const {
+std::optional<Vec3> MovingBody::flight_velocity() {
     if (!flies_ || inside_out_ > 0) return std::nullopt;
-    return swage::flight_velocity(matter_, force_, step_);
+    const std::optional<Vec3> velocity = swage::flight_velocity(matter_, step_);
+    if (!velocity || holds_strain(matter_, elastic_energy(), step_)) return std::nullopt;
+    return velocity;
 }
 
 void MovingBody::fly(const Drive& before, const Drive& now, const Vec3& velocity,
@@ -341,18 +343,11 @@ double MovingBody::round_off(double step) const {
     const Vec3Array& x = matter_.particle_position;
     const Vec3 gravity = this->gravity().cwiseAbs();
     const double eps = std::numeric_limits<double>::epsilon();
-    double modulus = 0;  // [J/kg], of laws whose energy is a difference of large numbers
-    for (std::size_t n = 0; n < matter_.material_count(); ++n) {
-        const Material& material = matter_.material_at(n);
-        if (material.elasticity == Elasticity::hencky) continue;
-        modulus = std::max(modulus, material.young_modulus / material.density);
-    }
-    return chunked_sum(x.size(), [&](std::size_t p) {
-        const double mass = matter_.particle_mass[p];
+    const double pushed = chunked_sum(x.size(), [&](std::size_t p) {
         const Vec3 far = eps * x.at(p).cwiseAbs();
-        return (force_.at(p).cwiseAbs() + mass * gravity).dot(far) +
-               mass * far.squaredNorm() / (step * step) + eps * mass * modulus;
+        return (force_.at(p).cwiseAbs() + matter_.particle_mass[p] * gravity).dot(far);
     });
+    return pushed + rounding_energy(matter_, step) + elastic_rounding(matter_);
 }
 
 double MovingBody::top_speed() const {

@@ -53,7 +53,7 @@ class MovingBody {
     double move(double kick, double step);
     void kick(double kick) { move(kick, 0); }
     // Its velocity where it flies (sim/free_flight.h) but for tools and other bodies [m/s].
-    std::optional<Vec3> flight_velocity() const;
+    std::optional<Vec3> flight_velocity();
     const TouchPoints* touch() const { return contacts_.at_rest().pairs().touch(); }
     // Flies from one drive to another at this velocity.
     void fly(const Drive& before, const Drive& now, const Vec3& velocity, BodyOutcome& outcome);
@@ -80,8 +80,7 @@ class MovingBody {
     Stored stored(const Drive& now, double step);
     double kinetic_energy(double step) const;  // alone [J]
     // How wrong a step of this length [s] may leave its energy, for places are rounded: to what
-    // forces then do, and as if speeds were to that in a step; the laws of rubber and foam add up
-    // terms of the size of their modulus [J].
+    // forces then do, and as sim/free_flight.h has it [J].
     double round_off(double step) const;
 
     // What a solution by the tangent asks for.
