@@ -69,6 +69,7 @@ struct MoveOutcome : StepCounts {
     int afloat = 0, hanging = 0;  // pieces that would fall, or swing about a hinge, from now on
     int let_be = 0;               // points of it that meet the work-piece no more, from now on
     double left_over = 0;  // of forces, at any rest from now on, where it is more than before [N]
+    double rounded = 0;    // the same where loads are small beside what rounded places leave [N]
     bool buckled = false;  // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;     // tools that the work-piece has slipped away from
     std::vector<std::string> pierced;  // tools that points of it have gone through

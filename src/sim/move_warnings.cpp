@@ -66,6 +66,12 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
                         "from here on {:.2g} N may be out of balance",
                         outcome.left_over));
     }
+    if (outcome.rounded > 0) {
+        warning.emplace_back(
+            fmt::format("loads are so small beside the matter's stiffness that the places of "
+                        "particles, to sixteen digits, leave up to {:.1g} N out of balance",
+                        outcome.rounded));
+    }
     if (std::any_of(outcome.body.begin(), outcome.body.end(),
                     [](const BodyOutcome& body) { return body.drag_bounded; })) {
         warning.emplace_back(

@@ -233,8 +233,9 @@ void QuasistaticSolver::keep(const StaticMove& move, bool buckled, MoveOutcome& 
     for (std::size_t n = 0; n < pushed.size(); ++n) body.load_work[n] += pushed[n];
     for (std::size_t n = 0; n < work.size(); ++n) {
         body.work[n] += work[n];
-        forces_.measure.carry(load[n].size);
     }
+    outcome.rounded = std::max(outcome.rounded, forces_.rounded(move.to));
+    forces_.measure.carry(load);
     load_ = std::move(load);
     if (breaks) {
         const double done = std::accumulate(work.begin(), work.end(), 0.0);

@@ -36,9 +36,9 @@ double QuasistaticSolver::seat_pieces(StaticMove& move) {
     const double pushed = pushes.size(matter_, to), a = matter_.lattice.spacing;
     if (!seats_ || apparatus_.tool.empty() || pushed == 0) return 0;
     if (settings_.self_contact && free.are_several()) return 0;  // they may lie on each other
-    if (forces_.measure.carried() > kMoreThanLoads * pushed) return 0;
+    if (forces_.measure.carries() > kMoreThanLoads * pushed) return 0;
     const bool stand = contacts.stand_still(matter_, move.from, to);
-    if (!stand && forces_.measure.carried() > kLies * pushed) return 0;
+    if (!stand && forces_.measure.carries() > kLies * pushed) return 0;
     const Drive& lie = stand ? to : move.from;
     Vec3Array& x = matter_.particle_position;
     const Vec3Array before = x;

@@ -15,6 +15,9 @@ constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it h
 // cells thick and 10 times as long (an estimate). At the first touch of a slender body the true
 // push is next to nothing.
 constexpr double kLeastPush = 1e-3;
+// Forces that rounded places leave in a body at rest add up to about this many times what each
+// particle's stiffness makes of its own (measured).
+constexpr double kRoundings = 16;
 
 }  // namespace
 
@@ -31,9 +34,14 @@ StaticForces::StaticForces(Aggregate& body, const Apparatus& machine, const SimS
       pushes(machine, settings, 0),
       self(body, settings),
       free(body, machine),
-      measure(least_push(body)) {
+      measure(least_push(body)),
+      tolerance_(settings.tolerance) {
     matter.branch_memory.clear();
     find_bounds();
+    const double eps = std::numeric_limits<double>::epsilon();
+    least_left_ = kRoundings * chunked_sum(stiffness_bound.size(), [&](std::size_t p) {
+                      return stiffness_bound[p] * eps * matter.particle_position.at(p).norm();
+                  });
 }
 
 void StaticForces::connections_changed() {
@@ -73,7 +81,14 @@ double StaticForces::find_at_rest(const Drive& now) {
 }
 
 double StaticForces::push_measure(const Drive& to) const {
-    return measure.measure(pushes.size(matter, to), [&] { return contacts.loads(matter, to); });
+    const double asks = pushes.size(matter, to);
+    const double push = measure.measure(asks, [&] { return contacts.loads(matter, to); });
+    return measure.asked(asks) > 0 ? std::max(push, least_left_ / tolerance_) : push;
+}
+
+double StaticForces::rounded(const Drive& to) const {
+    const bool asks = measure.asked(pushes.size(matter, to)) > 0;
+    return asks && push_measure(to) <= least_left_ / tolerance_ ? least_left_ : 0;
 }
 
 double StaticForces::residual_of(const Vec3Array& left, const Drive& to) const {

@@ -35,7 +35,10 @@ struct StaticForces {
     void find(const Drive& to, double moved = std::numeric_limits<double>::infinity());
     // What is left over; 1: as much as the largest push.
     double residual_of(const Vec3Array& left, const Drive& to) const;
-    double push_measure(const Drive& to) const;  // that push [N]
+    double push_measure(
+        const Drive& to) const;  // that push, or more where rounding leaves more [N]
+    // What may be left over there for rounding alone [N]; 0: what is asked for is well beyond that.
+    double rounded(const Drive& to) const;
     // Finds them where the body is, with no drag; what is left over there.
     double find_at_rest(const Drive& now);
 
@@ -75,11 +78,15 @@ struct StaticForces {
     template <typename Io>
     void visit(Io& io) {  // what steps change
         lattice.visit(io, matter);
-        io(contacts, pushes, self, free, measure, stiffness_bound, hold, held, force, mirrored);
+        io(contacts, pushes, self, free, measure, stiffness_bound, hold, held, force, mirrored,
+           least_left_);
     }
 
   private:
     void find_bounds();
+
+    double tolerance_;
+    double least_left_ = 0;  // what rounding leaves over, whatever is done [N]
 };
 
 }  // namespace swage

@@ -114,3 +114,29 @@ TEST_CASE("what next to nothing pushes comes down onto its rests, however few po
         CHECK(borne == Approx(-row[n].at("load_1 force y [N]")).epsilon(0.01));
     }
 }
+
+TEST_CASE("what tools have let go of lies on them by its weight, hard as they pressed it") {
+    const auto [machine, borne_by] = GENERATE(table<std::string, std::string>({
+        {"machine = \"press\"\ndepth = 0.05\nframes = 12\n", "anvil"},
+        {"machine = \"bend\"\nangle = \"20 deg\"\nframes = 20\n", "support"},
+    }));
+    for (const std::string material : {"structural_steel", "rubber", "nylon"}) {
+        CAPTURE(machine, material);
+        const Scratch scratch;
+        const fs::path scene = scratch.path() / "lies.toml", run = scratch.path() / "run";
+        put_text(scene, "[mesh]\nfile = \"" SWAGE_SOURCE_DIR
+                        "/assets/meshes/bar.obj\"\n"
+                        "[material]\nname = \"" +
+                            material + "\"\n[mold]\nacross = 3\n[[stage]]\nname = \"s\"\n" +
+                            machine + "gravity = 9.81\n");
+        const Outcome outcome =
+            run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--quiet"});
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        const auto row = rows_of(run / "curves/s.csv");
+        REQUIRE(!row.empty());
+        const auto& last = row.back();
+        CHECK(last.at(borne_by + " force y [N]") ==
+              Approx(-last.at("gravity force y [N]")).epsilon(0.01));
+    }
+}
