@@ -38,8 +38,7 @@ TriMesh shape_at(const TriMesh& mesh, const std::vector<Vec3>& position) {
 bool is_new_face(const TriMesh& mesh, std::size_t triangle) {
     if (mesh.triangle_material.empty()) return false;
     const auto look = static_cast<std::size_t>(mesh.triangle_material[triangle]);
-    return look < mesh.material.size() && mesh.material[look].name == kCutMaterial &&
-           !mesh.material[look].takes_colors;
+    return look < mesh.material.size() && is_cut_look(mesh.material[look]);
 }
 
 }  // namespace

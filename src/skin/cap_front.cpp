@@ -54,6 +54,7 @@ void halve(CutCaps& caps, std::map<Ends, Halved>& halved) {
             }
             caps.triangle.push_back(other);
             caps.neighbor.push_back(caps.neighbor[c]);
+            caps.inside.push_back(caps.inside[c]);
         }
     }
 }
@@ -81,6 +82,7 @@ void part_caps(CutCaps& caps, const std::function<bool(const Ends&)>& is_seam,
             if (parts && !tears) {
                 kept.triangle.push_back(t);
                 kept.neighbor.push_back(caps.neighbor[c]);
+                kept.inside.push_back(caps.inside[c]);
                 continue;
             }
             for (int k = 0; k < 3; ++k) {

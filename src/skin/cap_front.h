@@ -17,6 +17,7 @@ inline Ends ends(int a, int b) { return a < b ? Ends(a, b) : Ends(b, a); }
 struct CutCaps {
     std::vector<Corners> triangle;
     std::vector<int> neighbor;  // one a triangle: of the surface, -1 away from the rim
+    std::vector<int> inside;    // one a triangle
 };
 
 // `is_seam`: an edge along which the surface is cut. Triangles whose edge of a seam cannot part,

@@ -25,8 +25,7 @@ int axis_across(const Vec3& normal) {
 void lay_out_cuts(TriMesh& skin) {
     const auto is_cut = [&](std::size_t t) {
         if (skin.triangle_material.empty()) return false;
-        const SurfaceMaterial& look = skin.material[skin.triangle_material[t]];
-        return look.name == kCutMaterial && !look.takes_colors;
+        return is_cut_look(skin.material[skin.triangle_material[t]]);
     };
     std::vector<int> made;  // of each place, seen along each axis
     for (std::size_t t = 0; t < skin.triangle.size(); ++t) {

@@ -6,9 +6,9 @@
 
 namespace swage {
 
-// Of faces of kCutMaterial that have none: the place at molding, seen along the axis that the face
-// lies most across, [m], so that what holds together goes on from face to face and stays in every
-// frame. `skin`: its positions at molding.
+// Of cut faces (is_cut_look()) that have none: the place at molding, seen along the axis that the
+// face lies most across, [m], so that what holds together goes on from face to face and stays in
+// every frame. `skin`: its positions at molding.
 void lay_out_cuts(TriMesh& skin);
 
 }  // namespace swage

@@ -21,62 +21,12 @@ namespace swage {
 
 namespace {
 
-using Triangle = std::array<Vec3, 3>;
-
 // A part that a cut leaves is a chip below one cell and this share of the mesh, and nowhere a cell
 // away from the cut.
 constexpr double kChipShare = 0.01;
 // An edge that by the matter's map leaves its chord by more than this share of its length spans a
 // jump of the map.
 constexpr double kLeavesChord = 0.1;
-
-// One sweep for each blade: triangles that hang together by corners.
-std::vector<std::vector<Triangle>> separate_sweeps(const std::vector<Triangle>& sweep) {
-    std::map<std::array<double, 3>, int> first;
-    DisjointSets sets(sweep.size());
-    for (std::size_t t = 0; t < sweep.size(); ++t) {
-        for (const Vec3& p : sweep[t]) {
-            const auto [at, fresh] =
-                first.emplace(std::array<double, 3>{p[0], p[1], p[2]}, static_cast<int>(t));
-            if (!fresh) sets.unite(at->second, static_cast<int>(t));
-        }
-    }
-    std::vector<int> number;
-    std::vector<std::vector<Triangle>> separate(sets.number_sets(number));
-    for (std::size_t t = 0; t < sweep.size(); ++t) separate[number[t]].push_back(sweep[t]);
-    return separate;
-}
-
-// What of a sweep comes near the box.
-std::vector<Triangle> near_box(const std::vector<Triangle>& sweep, const Box& box) {
-    std::vector<Triangle> near;
-    for (const Triangle& t : sweep) {
-        if (box_of({t.begin(), t.end()}).overlaps(box)) near.push_back(t);
-    }
-    return near;
-}
-
-// The planes that blades sweep, one each; of a path that has several, as of a blade that cuts,
-// draws back, goes aside and cuts again, those that part the box.
-struct SweepPlanes {
-    std::vector<SweepPlane> plane;
-    bool has_curved = false;
-};
-SweepPlanes planes_of(const std::vector<Triangle>& sweep, const Box& box, double tolerance) {
-    SweepPlanes found;
-    for (const std::vector<Triangle>& one : separate_sweeps(sweep)) {
-        if (const auto plane = fit_sweep_plane(one, tolerance)) {
-            found.plane.push_back(*plane);
-            continue;
-        }
-        for (const std::vector<Triangle>& part : separate_sweeps(near_box(one, box))) {
-            const auto plane = fit_sweep_plane(part, tolerance);
-            if (plane) found.plane.push_back(*plane);
-            found.has_curved = found.has_curved || !plane;
-        }
-    }
-    return found;
-}
 
 // A plane, and the side of it that each vertex must follow; 0: as it likes.
 struct SidedPlane {
@@ -94,19 +44,21 @@ struct CutSoFar {
 class PlaneCut {
   public:
     PlaneCut(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
-             const Aggregate& matter, const SweepPlane& plane, CutSoFar& so_far)
+             const Aggregate& matter, const SweepPlane& plane, const Insides& insides,
+             CutSoFar& so_far)
         : mesh_(mesh),
           position_(position),
           mount_(mount),
           matter_(matter),
           plane_(plane),
+          insides_(insides),
           so_far_(so_far),
           map_(matter),
           pieces_(matter) {}
 
     SurfaceSplit run() {
         const double a = matter_.lattice.spacing;
-        SurfaceSplit split = split_surface(mesh_, position_, plane_, a);
+        SurfaceSplit split = split_surface(mesh_, position_, plane_, a, insides_);
         std::vector<int> own = sides_of_old(split);
         if (split.seam_edges == 0) {
             pass_by(std::move(own));
@@ -117,6 +69,7 @@ class PlaneCut {
         std::vector<double> share;
         std::vector<Vec3> cut_world;
         find_cut_places(split, cut, share, cut_world);
+        draw_rim_straight(cut_world, split);
         find_cap_places(split, cut, inner);
 
         own.resize(old + split.added.size(), 0);
@@ -148,7 +101,7 @@ class PlaneCut {
             }
         }
         keep_smooth_normals(mesh_);
-        mesh_ = apply_split(mesh_, split, reference, share);
+        mesh_ = apply_split(mesh_, split, reference, share, insides_);
         finish_mount(mount_, matter_);
         hold_places(mount_, matter_, world);
         return split;
@@ -324,6 +277,19 @@ class PlaneCut {
         }
     }
 
+    // Between the places of the cut points.
+    void draw_rim_straight(const std::vector<Vec3>& cut_world, SurfaceSplit& split) const {
+        const auto old = position_.size();
+        const auto place = [&](int raw) -> const Vec3& {
+            const auto at = static_cast<std::size_t>(raw);
+            return at < old ? position_[at] : cut_world[at - old];
+        };
+        for (const auto& [raw, rim] : split.rim) {
+            const Vec3 &low = place(rim.low), &high = place(rim.high);
+            split.cap_point[raw - old - cut_world.size()] = low + rim.share * (high - low);
+        }
+    }
+
     // Cells that the plane crosses, or nearly.
     std::vector<MappedCell> crossed_cells() const {
         std::vector<MappedCell> cells;
@@ -357,12 +323,21 @@ class PlaneCut {
             if (raw < first) known.push_back(raw);
         }
         places.assign(split.cap_point.size(), {});  // without a cell: not known
+        const auto place_of = [&](int raw) -> BodyPlace {
+            return raw < old     ? mount_.place(raw)
+                   : raw < first ? cut[raw - old]
+                                 : places[raw - first];
+        };
+        for (const auto& [raw, rim] : split.rim) {
+            const std::array<BodyPlace, 2> ends = {place_of(rim.low), place_of(rim.high)};
+            const Vec3 &low = ends[0].reference, &high = ends[1].reference;
+            places[raw - first] = pieces_.beside(low + rim.share * (high - low), ends);
+            known.push_back(raw);
+        }
         const auto spread = [&] {
             for (; !known.empty(); known.pop_front()) {
                 const int raw = known.front();
-                const BodyPlace near = raw < old     ? mount_.place(raw)
-                                       : raw < first ? cut[raw - old]
-                                                     : places[raw - first];
+                const BodyPlace near = place_of(raw);
                 for (int other : beside[raw]) {
                     if (other < first || places[other - first].cell >= 0) continue;
                     places[other - first] =
@@ -430,6 +405,7 @@ class PlaneCut {
     Mount& mount_;
     const Aggregate& matter_;
     const SweepPlane& plane_;
+    const Insides& insides_;
     CutSoFar& so_far_;  // in the end with this one
     const BodyMap map_;
     const PieceMap pieces_;
@@ -438,18 +414,19 @@ class PlaneCut {
 }  // namespace
 
 CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
-                   const Aggregate& matter, const std::vector<Triangle>& sweep) {
+                   const Aggregate& matter, const std::vector<std::array<Vec3, 3>>& sweep,
+                   const Insides& insides) {
     CutResult result;
     const double a = matter.lattice.spacing;
     std::vector<Vec3> now = position;
-    SweepPlanes swept = planes_of(sweep, box_of(position).widened(a), 1e-3 * a);
+    SweepPlanes swept = sweep_planes(sweep, box_of(position).widened(a), 1e-3 * a);
     result.has_curved = swept.has_curved;
     CutSoFar cut;
     for (SweepPlane& plane : swept.plane) {
         // As the blade does, which never runs exactly through a particle.
         plane.point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
         if (result.planes > 0) skin_positions(mount, matter, now);
-        const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, plane, cut).run();
+        const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, plane, insides, cut).run();
         result.planes += split.seam_edges > 0;
         result.open_parts += split.open_parts;
     }

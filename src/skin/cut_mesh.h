@@ -8,6 +8,7 @@
 
 #include "geometry/trimesh.h"
 #include "matter/aggregate.h"
+#include "skin/insides.h"
 #include "skin/mount.h"
 
 namespace swage {
@@ -21,10 +22,11 @@ struct CutResult {
 // Splits `mesh` (its positions are those at molding) along everything that the blades will sweep,
 // and extends the mount. `position`: of the vertices now [m]. `sweep`: triangles in the world of
 // now that share their corners to the bit, for all of the way from where they first reach the
-// matter. Attributes are carried on; caps get the material kCutMaterial and no texture coordinates.
-// Existing vertices keep their numbers.
+// matter. Attributes are carried on; caps get the material kCutMaterial, or the look of the one of
+// `insides` that they show, and no texture coordinates. Existing vertices keep their numbers.
 CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
-                   const Aggregate& matter, const std::vector<std::array<Vec3, 3>>& sweep);
+                   const Aggregate& matter, const std::vector<std::array<Vec3, 3>>& sweep,
+                   const Insides& insides = {});
 
 // Removes triangles whose corners follow different pieces of the matter: what is left to do after a
 // blade whose sweep is not plane.

@@ -39,35 +39,6 @@ SurfaceMaterial main_look(const TriMesh& mesh) {
     return mesh.material[std::max_element(area.begin(), area.end()) - area.begin()];
 }
 
-SurfaceMaterial cut_look(const TriMesh& mesh) {
-    const SurfaceMaterial outside = main_look(mesh);
-    SurfaceMaterial look;
-    look.name = kCutMaterial;
-    look.takes_colors = false;  // those of its rim are the outside's
-    const bool hides = !outside.texture.empty() || outside.embedded_texture != nullptr ||
-                       !mesh.position_color.empty();
-    if (outside.inside) {
-        look.color = *outside.inside;
-        look.roughness = 0.7;
-        return look;
-    }
-    if (outside.metallic > 0.5) {
-        look.color = outside.color;
-        look.metallic = outside.metallic;
-        look.roughness = std::max(0.45, outside.roughness);  // as a saw leaves it
-        return look;
-    }
-    if (outside.clear > 0.5) {
-        look.color = outside.color;
-        look.clear = outside.clear;
-        look.roughness = std::max(0.3, outside.roughness);
-        return look;
-    }
-    look.color = hides ? kPale : Vec3(outside.color + kPaler * (kPale - outside.color));
-    look.roughness = 0.7;
-    return look;
-}
-
 // Across which edges of each triangle the texture goes on.
 std::vector<Corners> adjoining(const TriMesh& mesh) {
     using Corner = std::tuple<int, double, double>;  // position, and place in the texture
@@ -109,15 +80,64 @@ std::vector<int> charts_of(const std::vector<Corners>& adjoins) {
 
 }  // namespace
 
+SurfaceMaterial cut_look(const TriMesh& mesh) {
+    const SurfaceMaterial outside = main_look(mesh);
+    SurfaceMaterial look;
+    look.name = kCutMaterial;
+    look.takes_colors = false;  // those of its rim are the outside's
+    const bool hides = !outside.texture.empty() || outside.embedded_texture != nullptr ||
+                       !mesh.position_color.empty();
+    if (outside.inside) {
+        look.color = *outside.inside;
+        look.roughness = 0.7;
+        return look;
+    }
+    if (outside.metallic > 0.5) {
+        look.color = outside.color;
+        look.metallic = outside.metallic;
+        look.roughness = std::max(0.45, outside.roughness);  // as a saw leaves it
+        return look;
+    }
+    if (outside.clear > 0.5) {
+        look.color = outside.color;
+        look.clear = outside.clear;
+        look.roughness = std::max(0.3, outside.roughness);
+        return look;
+    }
+    look.color = hides ? kPale : Vec3(outside.color + kPaler * (kPale - outside.color));
+    look.roughness = 0.7;
+    return look;
+}
+
+namespace {
+
+// Of those that are not the mesh's own, which take colours, as all that are read do.
+int number_of(const TriMesh& mesh, const std::string& name) {
+    const auto known =
+        std::find_if(mesh.material.begin(), mesh.material.end(),
+                     [&](const SurfaceMaterial& m) { return m.name == name && !m.takes_colors; });
+    return static_cast<int>(known - mesh.material.begin());
+}
+
+}  // namespace
+
 int cut_material(TriMesh& mesh, const TriMesh& like) {
     if (mesh.material.empty()) mesh.material.emplace_back();
-    // The mesh may have one of that name of its own, which takes colours, as all that are read do.
-    const auto known = std::find_if(
-        mesh.material.begin(), mesh.material.end(),
-        [](const SurfaceMaterial& m) { return m.name == kCutMaterial && !m.takes_colors; });
-    const auto number = static_cast<int>(known - mesh.material.begin());
-    if (known == mesh.material.end()) mesh.material.push_back(cut_look(like));
+    const int number = number_of(mesh, kCutMaterial);
+    if (number == static_cast<int>(mesh.material.size())) mesh.material.push_back(cut_look(like));
     return number;
+}
+
+int inside_material(TriMesh& mesh, const SurfaceMaterial& look) {
+    const int number = number_of(mesh, look.name);
+    if (number == static_cast<int>(mesh.material.size())) mesh.material.push_back(look);
+    return number;
+}
+
+std::string cut_name(const std::string& inside) { return std::string(kCutMaterial) + "_" + inside; }
+
+bool is_cut_look(const SurfaceMaterial& look) {
+    return !look.takes_colors && (look.name == kCutMaterial || look.name.starts_with(cut_name("")));
 }
 
 NewLook::NewLook(const TriMesh& mesh)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "geometry/triangle_tree.h"
@@ -18,6 +19,17 @@ inline constexpr const char* kCutMaterial = "cut";
 // not there; so is the mesh's own where it has none. Metal is metal inside, and a plain colour goes
 // through, paler; what a texture hides is pale; where a material says what is inside, it is that.
 int cut_material(TriMesh& mesh, const TriMesh& like);
+
+// What such a face looks like where nothing else lies inside.
+SurfaceMaterial cut_look(const TriMesh& like);
+
+// The number in `mesh` of a look of cut faces that show what lies inside; added where it is not
+// there. It is known by its name, which begins as cut_name() has it.
+int inside_material(TriMesh& mesh, const SurfaceMaterial& look);
+std::string cut_name(const std::string& inside);
+
+// Whether faces of this look are such as a blade or a break has laid open.
+bool is_cut_look(const SurfaceMaterial& look);
 
 // The look of a mesh for surfaces that are made anew from the same matter: each face has material,
 // part, texture and colours of where the mesh is nearest at molding.

@@ -64,11 +64,13 @@ bool wind(Triangulation& cdt, const Direction& direction) {
 
 double distance_to_segments(const Section& section, const Vec2& p) {
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& [a, b] : section.segment) {
-        const Vec2 way = section.point[b] - section.point[a], from = p - section.point[a];
-        const double length2 = way.squaredNorm();
-        const double t = length2 > 0 ? std::clamp(from.dot(way) / length2, 0.0, 1.0) : 0.0;
-        least = std::min(least, (from - t * way).squaredNorm());
+    for (const auto* lines : {&section.segment, &section.line}) {
+        for (const auto& [a, b] : *lines) {
+            const Vec2 way = section.point[b] - section.point[a], from = p - section.point[a];
+            const double length2 = way.squaredNorm();
+            const double t = length2 > 0 ? std::clamp(from.dot(way) / length2, 0.0, 1.0) : 0.0;
+            least = std::min(least, (from - t * way).squaredNorm());
+        }
     }
     return std::sqrt(least);
 }
@@ -127,6 +129,10 @@ std::optional<SectionTriangles> fill_section(const Section& section) {
         for (const auto& [a, b] : section.segment) {
             cdt.insert_constraint(vertex[a], vertex[b]);
             direction[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+        }
+        for (const auto& [a, b] : section.line) {  // on both sides of which is as much
+            cdt.insert_constraint(vertex[a], vertex[b]);
+            direction[{std::min(a, b), std::max(a, b)}] += 0;
         }
     } catch (const Triangulation::Intersection_of_constraints_exception&) {
         return std::nullopt;

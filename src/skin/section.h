@@ -16,6 +16,7 @@ struct Section {
     std::vector<std::array<int, 2>> segment;  // closed loops, the inside on the left
     std::vector<Vec2> wish;                   // places inside that should become points
     double spacing = 0;                       // [m] of the points that are added inside
+    std::vector<std::array<int, 2>> line;     // inside, that become edges too (section_lines.h)
 };
 
 struct SectionTriangles {
@@ -23,8 +24,8 @@ struct SectionTriangles {
     std::vector<Corners> triangle;  // counter-clockwise
 };
 
-// Every segment becomes an edge of the triangles. Nothing when the segments cross or touch each
-// other, do not close, or wind more than once around a place.
+// Every segment and line becomes an edge of the triangles. Nothing when the segments cross or touch
+// each other, do not close, or wind more than once around a place.
 std::optional<SectionTriangles> fill_section(const Section& section);
 
 }  // namespace swage

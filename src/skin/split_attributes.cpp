@@ -22,12 +22,7 @@ class Carry {
         for (const SplitTriangle& triangle : split_.triangle) {
             Corners uv = {-1, -1, -1};
             for (int k = 0; k < 3 && triangle.parent >= 0; ++k) {
-                const Corners& parent = mesh_.triangle_uv[triangle.parent];
-                const int raw = triangle.raw[k];
-                uv[k] = is_old(raw)
-                            ? parent[corner_of(triangle, raw)]
-                            : made_.uv(raw, parent[corner_of(triangle, cut(raw).low)],
-                                       parent[corner_of(triangle, cut(raw).high)], share(raw));
+                uv[k] = uv_at(triangle, triangle.raw[k]);
             }
             out_.triangle_uv.push_back(uv);
         }
@@ -48,12 +43,17 @@ class Carry {
                     group[k] = at->second;
                     continue;
                 }
-                const Corners& parent = mesh_.triangle_smooth[triangle.parent];
-                group[k] =
-                    is_old(raw)
-                        ? parted_.at(parent[corner_of(triangle, raw)], vertex)
-                        : made_.smooth(vertex, parent[corner_of(triangle, cut(raw).low)],
-                                       parent[corner_of(triangle, cut(raw).high)], share(raw));
+                const auto of = [&](int old) {
+                    return mesh_.triangle_smooth[triangle.parent][corner_of(triangle, old)];
+                };
+                if (is_old(raw)) {
+                    group[k] = parted_.at(of(raw), vertex);
+                    continue;
+                }
+                const auto [low, high, share] = between(raw);
+                group[k] = is_old(low) && is_old(high)
+                               ? made_.smooth(vertex, of(low), of(high), share)
+                               : rim_group(triangle, raw, vertex);
             }
             out_.triangle_smooth.push_back(group);
         }
@@ -62,20 +62,50 @@ class Carry {
     void colors() {
         if (mesh_.position_color.empty()) return;
         for (const SplitVertex& vertex : split_.added) {
-            Eigen::Vector3f color = Eigen::Vector3f::Ones();
-            if (is_old(vertex.raw)) {
-                color = mesh_.position_color[vertex.raw];
-            } else if (vertex.raw - old_ < static_cast<int>(split_.cut.size())) {
-                color = made_.color(cut(vertex.raw).low, cut(vertex.raw).high, share(vertex.raw));
-            }
-            out_.position_color.push_back(color);
+            out_.position_color.push_back(color_at(vertex.raw));
         }
     }
 
   private:
     bool is_old(int raw) const { return raw < old_; }
-    const CutPoint& cut(int raw) const { return split_.cut[raw - old_]; }
-    double share(int raw) const { return share_[raw - old_]; }
+    // A cut point or one on the rim.
+    RimPoint between(int raw) const {
+        const int at = raw - old_;
+        if (at >= static_cast<int>(split_.cut.size())) return split_.rim.at(raw);
+        return {split_.cut[at].low, split_.cut[at].high, share_[at]};
+    }
+    int uv_at(const SplitTriangle& triangle, int raw) {
+        if (is_old(raw)) return mesh_.triangle_uv[triangle.parent][corner_of(triangle, raw)];
+        const auto [low, high, share] = between(raw);
+        return made_.uv(raw, uv_at(triangle, low), uv_at(triangle, high), share);
+    }
+    Eigen::Vector3f color_at(int raw) const {
+        if (is_old(raw)) return mesh_.position_color[raw];
+        const bool is_inner =
+            raw - old_ >= static_cast<int>(split_.cut.size()) && !split_.rim.contains(raw);
+        if (is_inner) return Eigen::Vector3f::Ones();
+        const auto [low, high, share] = between(raw);
+        const Eigen::Vector3f from = color_at(low), to = color_at(high);
+        return from + static_cast<float>(share) * (to - from);
+    }
+    Vec3 normal_at(const SplitTriangle& triangle, int raw) const {
+        if (is_old(raw)) {
+            const auto group = static_cast<std::size_t>(
+                mesh_.triangle_smooth[triangle.parent][corner_of(triangle, raw)]);
+            return group < mesh_.smooth_normal.size() ? mesh_.smooth_normal[group]
+                                                      : Vec3(Vec3::Zero());
+        }
+        const auto [low, high, share] = between(raw);
+        const Vec3 from = normal_at(triangle, low), to = normal_at(triangle, high);
+        const bool both = from != Vec3::Zero() && to != Vec3::Zero();
+        return both ? Vec3(from + share * (to - from)) : Vec3(Vec3::Zero());
+    }
+    // Of a point within a triangle, which shares it with nothing else on its side.
+    int rim_group(const SplitTriangle& triangle, int raw, int vertex) {
+        const auto [at, fresh] = rim_group_.emplace(vertex, out_.smooth_group_count);
+        if (fresh) add_smooth_group(out_, normal_at(triangle, raw));
+        return at->second;
+    }
     int corner_of(const SplitTriangle& triangle, int v) const {
         const Corners& parent = mesh_.triangle[triangle.parent];
         return parent[0] == v ? 0 : parent[1] == v ? 1 : 2;
@@ -87,6 +117,7 @@ class Carry {
     TriMesh& out_;
     EdgeAttributes made_;
     PartedGroups parted_;
+    std::map<int, int> rim_group_;  // by vertex
     const int old_ = static_cast<int>(mesh_.position.size());
 };
 
@@ -104,13 +135,16 @@ void carry_polygons(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& out
     }
 }
 
-void carry_materials(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& out) {
+void carry_materials(const TriMesh& mesh, const SurfaceSplit& split, const Insides& insides,
+                     TriMesh& out) {
     const bool has_cap = !split.triangle.empty() && split.triangle.back().parent < 0;
     if (!has_cap && mesh.triangle_material.empty()) return;
     const int cut = has_cap ? cut_material(out, mesh) : -1;
     for (const SplitTriangle& triangle : split.triangle) {
         int material = cut;
-        if (triangle.parent >= 0) {
+        if (triangle.inside >= 0) {
+            material = inside_material(out, insides.look(triangle.inside));
+        } else if (triangle.parent >= 0) {
             material = mesh.triangle_material.empty() ? 0 : mesh.triangle_material[triangle.parent];
         }
         out.triangle_material.push_back(material);
@@ -120,7 +154,8 @@ void carry_materials(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& ou
 }  // namespace
 
 TriMesh apply_split(const TriMesh& mesh, const SurfaceSplit& split,
-                    const std::vector<Vec3>& reference, const std::vector<double>& share) {
+                    const std::vector<Vec3>& reference, const std::vector<double>& share,
+                    const Insides& insides) {
     TriMesh out;
     out.position = mesh.position;
     out.position.insert(out.position.end(), reference.begin(), reference.end());
@@ -141,7 +176,7 @@ TriMesh apply_split(const TriMesh& mesh, const SurfaceSplit& split,
     carry.smooth_groups();
     carry.colors();
     carry_polygons(mesh, split, out);
-    carry_materials(mesh, split, out);
+    carry_materials(mesh, split, insides, out);
     return out;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cut is settled first, in the plane: every edge of the section that borders a kept cap
-// triangle is a seam. Then corners are joined across all edges but the seams; at a seam, surface
-// joins cap, each on its own side. Every set of joined corners is a vertex, so the result is
-// manifold, and where the blade stops inside the body the last vertices stay shared.
+// triangle is a seam. Then corners are joined (skin/join_sides.h).
 #include "skin/surface_split.h"
 
 #include <algorithm>
@@ -14,7 +12,9 @@
 
 #include "geometry/disjoint_sets.h"
 #include "skin/cap_front.h"
+#include "skin/join_sides.h"
 #include "skin/section.h"
+#include "skin/section_lines.h"
 #include "skin/sheets.h"
 
 namespace swage {
@@ -24,6 +24,8 @@ namespace {
 // A vertex nearer to the plane than this share of its shortest edge counts as lying on it, so that
 // no slivers are cut off.
 constexpr double kOnPlane = 0.01;
+// Spacings, within which lines on the section are drawn to what is there.
+constexpr double kDrawn = 0.02;
 
 // One triangle of the old surface, or a part of one.
 struct Part {
@@ -41,8 +43,13 @@ struct Seam {
 class Splitter {
   public:
     Splitter(const TriMesh& mesh, const std::vector<Vec3>& position, const SweepPlane& plane,
-             double spacing)
-        : mesh_(mesh), position_(position), plane_(plane), spacing_(spacing) {}
+             double spacing, const Insides& insides)
+        : mesh_(mesh),
+          position_(position),
+          plane_(plane),
+          spacing_(spacing),
+          insides_(insides),
+          line_(insides.lines_in(plane)) {}
 
     SurfaceSplit run() {
         classify();
@@ -51,7 +58,7 @@ class Splitter {
         part_all();
         emit_surface();
         emit_caps();
-        join_corners();
+        join();
         split_.seam_edges = static_cast<int>(
             wall_.size() + std::ranges::count_if(seam_, [](const Seam& s) { return s.kept; }));
         return std::move(split_);
@@ -130,8 +137,7 @@ class Splitter {
             if (used_[cut - old_count()]) at[cuts++] = count, loop[count++] = cut;
         }
         const auto emit = [&](int a, int b, int c) {
-            const Corners raw = {loop[a % count], loop[b % count], loop[c % count]};
-            f(Part{raw, side_of(raw, t), cuts > 0});
+            emit_fan({loop[a % count], loop[b % count], loop[c % count]}, t, cuts > 0, f);
         };
         if (cuts == 0) {
             emit(0, 1, 2);
@@ -153,6 +159,26 @@ class Splitter {
                 emit(first + 3, first + 4, first);
             }
         }
+    }
+
+    // One part, or several where points lie on its edges.
+    template <typename F>
+    void emit_fan(const Corners& raw, int parent, bool is_split, const F& f) const {
+        for (int k = 0; k < 3 && !rim_.empty(); ++k) {
+            const int from = raw[k], to = raw[(k + 1) % 3], apex = raw[(k + 2) % 3];
+            const auto at = rim_.find(ends(from, to));
+            if (at == rim_.end()) continue;
+            std::vector<int> stop = at->second;
+            if (from > to) std::reverse(stop.begin(), stop.end());
+            stop.push_back(to);
+            int last = from;
+            for (const int next : stop) {
+                emit_fan({last, next, apex}, parent, true, f);
+                last = next;
+            }
+            return;
+        }
+        f(Part{raw, side_of(raw, parent), is_split});
     }
 
     bool touches_plane(int t) const {
@@ -244,29 +270,32 @@ class Splitter {
                 std::clamp(static_cast<int>((b - a).norm() / (0.5 * spacing_)), 1, 999);
             for (int n = 0; n < steps; ++n) section.wish.push_back(a + (b - a) * n / steps);
         }
-        const std::optional<SectionTriangles> filled = fill_section(section);
+        std::vector<int> edges = seams;
+        std::optional<SectionTriangles> filled;
+        if (!is_tangled && !line_.empty()) {
+            Section drawn = section;
+            const std::vector<LinePoint> point = add_lines(line_, kDrawn * spacing_, drawn);
+            if (!drawn.line.empty()) filled = fill_section(drawn);
+            if (filled) {
+                section = std::move(drawn);
+                divide_seams(point, edges, section, raw);
+            }
+        }
+        if (!filled) filled = fill_section(section);
         if (!filled) return false;
 
         std::map<Ends, int> seam_at;
-        for (int s : seams) seam_at[ends(seam_[s].from, seam_[s].to)] = s;
-        const int known = static_cast<int>(section.point.size());
-        std::vector<int> added(filled->added.size(), -1);
+        for (int s : edges) seam_at[ends(seam_[s].from, seam_[s].to)] = s;
+        std::vector<Vec2> point = section.point;
+        point.insert(point.end(), filled->added.begin(), filled->added.end());
+        raw.resize(point.size(), -1);
         for (const Corners& t : filled->triangle) {
-            Vec2 middle = Vec2::Zero();
-            for (int c : t) middle += (c < known ? section.point[c] : filled->added[c - known]) / 3;
+            const Vec2 middle = point[t[0]] / 3 + point[t[1]] / 3 + point[t[2]] / 3;
             if (!plane_.covers(middle)) continue;
             Corners cap;
             for (int k = 0; k < 3; ++k) {
-                if (t[k] < known) {
-                    cap[k] = raw[t[k]];
-                    continue;
-                }
-                int& id = added[t[k] - known];
-                if (id < 0) {
-                    id =
-                        old_count() + static_cast<int>(split_.cut.size() + split_.cap_point.size());
-                    split_.cap_point.push_back(plane_.world(filled->added[t[k] - known]));
-                }
+                int& id = raw[t[k]];
+                if (id < 0) id = add_cap_point(point[t[k]]);
                 cap[k] = id;
             }
             int neighbor = -1;
@@ -278,8 +307,38 @@ class Splitter {
             }
             cap_.triangle.push_back(cap);
             cap_.neighbor.push_back(neighbor);
+            cap_.inside.push_back(insides_.at(plane_.world(middle)));
         }
         return true;
+    }
+
+    int add_cap_point(const Vec2& at) {
+        split_.cap_point.push_back(plane_.world(at));
+        return old_count() + static_cast<int>(split_.cut.size() + split_.cap_point.size()) - 1;
+    }
+
+    // Where lines end on them. `point`: what the section has after its own; `edges`: the seams that
+    // it is made of.
+    void divide_seams(const std::vector<LinePoint>& point, std::vector<int>& edges,
+                      const Section& section, std::vector<int>& raw) {
+        const std::size_t known = raw.size();
+        Seam whole{};
+        int segment = -1, last = -1;
+        for (std::size_t n = 0; n < point.size() && point[n].segment >= 0; ++n) {
+            const auto& [on, share] = point[n];
+            if (on != segment) segment = on, last = edges[on], whole = seam_[last];
+            const int id = add_cap_point(section.point[known + n]);
+            raw.push_back(id);
+            const auto edge = ends(whole.from, whole.to);
+            const bool is_up = whole.from == edge.first;
+            std::vector<int>& all = rim_[edge];
+            all.insert(is_up ? all.end() : all.begin(), id);
+            split_.rim[id] = {edge.first, edge.second, is_up ? share : 1 - share};
+            seam_[last].to = id;
+            last = static_cast<int>(seam_.size());
+            edges.push_back(last);
+            seam_.push_back({id, whole.to, whole.plus});
+        }
     }
 
     void part_all() {
@@ -293,8 +352,7 @@ class Splitter {
             kept.erase(edge);
         };
         const auto half_way = [&](const Ends& edge) {
-            split_.cap_point.push_back(plane_.world(0.5 * (flat(edge.first) + flat(edge.second))));
-            return old_count() + static_cast<int>(split_.cut.size() + split_.cap_point.size() - 1);
+            return add_cap_point(0.5 * (flat(edge.first) + flat(edge.second)));
         };
         part_caps(cap_, is_seam, leave, half_way);
     }
@@ -302,17 +360,31 @@ class Splitter {
     void emit_surface() {
         used_.assign(split_.cut.size(), false);
         const auto use = [&](int raw) {
-            if (raw >= old_count()) used_[raw - old_count()] = true;
+            const int cut = raw - old_count();
+            if (cut >= 0 && cut < static_cast<int>(used_.size())) used_[cut] = true;
         };
         for (const Seam& seam : seam_) {
-            if (seam.kept) use(seam.from), use(seam.to);
+            if (seam.kept) kept_.insert(ends(seam.from, seam.to));
         }
-        for (const auto& [a, b] : wall_) use(a), use(b);
+        kept_.insert(wall_.begin(), wall_.end());
+        for (const auto& [a, b] : kept_) use(a), use(b);
+        std::erase_if(rim_, [&](const auto& rim) { return !is_cut(rim.first, rim.second); });
+        for (const auto& [edge, points] : rim_) use(edge.first), use(edge.second);
         for (int t = 0; t < static_cast<int>(mesh_.triangle.size()); ++t) {
             for_each_part(t, [&](const Part& part) {
                 split_.triangle.push_back({part.raw, part.raw, t, part.split, part.side});
             });
         }
+    }
+
+    // Whether any part of an edge that these points divide is a seam.
+    bool is_cut(const Ends& edge, const std::vector<int>& points) const {
+        int last = edge.first;
+        for (const int p : points) {
+            if (kept_.count(ends(last, p))) return true;
+            last = p;
+        }
+        return kept_.count(ends(last, edge.second)) > 0;
     }
 
     // Both caps; those of one connected piece take the same neighbour.
@@ -337,113 +409,33 @@ class Splitter {
             for (std::size_t c = 0; c < count; ++c) {
                 Corners raw = cap_.triangle[c];
                 if (side > 0) std::swap(raw[1], raw[2]);
-                split_.triangle.push_back(
-                    {raw, raw, -1, false, side, neighbor[pieces.root(static_cast<int>(c))]});
+                split_.triangle.push_back({raw, raw, -1, false, side,
+                                           neighbor[pieces.root(static_cast<int>(c))],
+                                           cap_.inside[c]});
             }
         }
     }
 
-    struct Use {
-        Ends edge;
-        int kind;  // 0 surface, 1 cap above, -1 cap below
-        int side;
-        Ends corner;  // at the edge's ends
-        bool operator<(const Use& other) const {
-            return std::tie(edge, kind, corner) < std::tie(other.edge, other.kind, other.corner);
-        }
-    };
-
-    void join_corners() {
-        std::set<int> at_seam;
-        std::set<Ends> kept;
-        for (const Seam& seam : seam_) {
-            if (!seam.kept) continue;
-            at_seam.insert({seam.from, seam.to});
-            kept.insert(ends(seam.from, seam.to));
-        }
-        for (const Ends& edge : wall_) {
-            at_seam.insert({edge.first, edge.second});
-            kept.insert(edge);
-        }
-        for (const Corners& cap : cap_.triangle) at_seam.insert(cap.begin(), cap.end());
-
-        std::vector<Use> uses;
-        DisjointSets corners(3 * split_.triangle.size());
-        for (std::size_t t = 0; t < split_.triangle.size(); ++t) {
-            const SplitTriangle& triangle = split_.triangle[t];
-            for (int k = 0; k < 3; ++k) {
-                const int a = triangle.raw[k], b = triangle.raw[(k + 1) % 3];
-                if (!at_seam.count(a) && !at_seam.count(b)) continue;
-                const int ca = static_cast<int>(3 * t + k);
-                const int cb = static_cast<int>(3 * t + (k + 1) % 3);
-                uses.push_back({ends(a, b), triangle.parent < 0 ? triangle.side : 0, triangle.side,
-                                a < b ? Ends(ca, cb) : Ends(cb, ca)});
-            }
-        }
-        std::sort(uses.begin(), uses.end());
-        const auto join = [&](const Use& x, const Use& y) {
-            corners.unite(x.corner.first, y.corner.first);
-            corners.unite(x.corner.second, y.corner.second);
+    void join() {
+        std::set<int> parts;  // raw
+        const auto add = [&](int raw) {
+            if (raw >= old_count()) parts.insert(raw);
         };
-        for (std::size_t begin = 0, end; begin < uses.size(); begin = end) {
-            for (end = begin; end < uses.size() && uses[end].edge == uses[begin].edge; ++end) {
-            }
-            const bool seam = kept.count(uses[begin].edge) > 0;
-            const auto count = [&](int kind) {
-                return std::count_if(uses.begin() + begin, uses.begin() + end,
-                                     [&](const Use& u) { return u.kind == kind; });
-            };
-            // Where the blade stops the two caps meet.
-            const bool front = !seam && count(1) == 1;
-            for (std::size_t i = begin; i < end; ++i) {
-                for (std::size_t j = i + 1; j < end; ++j) {
-                    const Use &x = uses[i], &y = uses[j];
-                    if (seam ? x.side == y.side
-                             : x.kind == y.kind || (front && x.kind != 0 && y.kind != 0)) {
-                        join(x, y);
-                    }
-                }
-            }
+        for (const auto& [a, b] : kept_) parts.insert({a, b});
+        for (const auto& [edge, points] : rim_) {  // also of what is no seam
+            add(edge.first), add(edge.second);
+            parts.insert(points.begin(), points.end());
         }
-        number_vertices(at_seam, corners);
-    }
-
-    void number_vertices(const std::set<int>& at_seam, DisjointSets& corners) {
-        std::map<int, std::pair<int, int>> vertex_side;  // of a set: vertex, side (2: not known)
-        std::set<int> taken;
-        int next = old_count();
-        for (std::size_t t = 0; t < split_.triangle.size(); ++t) {
-            SplitTriangle& triangle = split_.triangle[t];
-            for (int k = 0; k < 3; ++k) {
-                const int raw = triangle.raw[k];
-                if (!at_seam.count(raw)) continue;
-                const int root = corners.root(static_cast<int>(3 * t + k));
-                auto [at, fresh] = vertex_side.emplace(root, std::pair(-1, triangle.side));
-                auto& [vertex, side] = at->second;
-                if (fresh) {
-                    vertex = raw < old_count() && taken.insert(raw).second ? raw : next++;
-                    (vertex < old_count() ? split_.at_seam : split_.added).push_back({raw, 0});
-                    if (vertex >= old_count())
-                        added_set_.push_back(root);
-                    else
-                        seam_set_.push_back(root);
-                }
-                if (side != triangle.side) side = 0;
-                triangle.vertex[k] = vertex;
-            }
-        }
-        for (std::size_t n = 0; n < split_.added.size(); ++n) {
-            split_.added[n].side = vertex_side.at(added_set_[n]).second;
-        }
-        for (std::size_t n = 0; n < split_.at_seam.size(); ++n) {
-            split_.at_seam[n].side = vertex_side.at(seam_set_[n]).second;
-        }
+        for (const Corners& cap : cap_.triangle) parts.insert(cap.begin(), cap.end());
+        join_sides(parts, kept_, old_count(), split_);
     }
 
     const TriMesh& mesh_;
     const std::vector<Vec3>& position_;
     const SweepPlane& plane_;
     const double spacing_;
+    const Insides& insides_;
+    const std::vector<std::array<Vec2, 2>> line_;  // of theirs
     SurfaceSplit split_;
     std::vector<double> height_;
     std::vector<int> sign_;
@@ -451,15 +443,16 @@ class Splitter {
     std::vector<bool> used_;  // cut points
     std::vector<Seam> seam_;
     std::vector<Ends> wall_;  // cut along too, but inside: of sheets that lie back to back
-    CutCaps cap_;             // raw, seen against the normal
-    std::vector<int> added_set_, seam_set_;
+    std::map<Ends, std::vector<int>> rim_;  // points on edges of the section, from the first end
+    std::set<Ends> kept_;                   // seams and walls, in the end
+    CutCaps cap_;                           // raw, seen against the normal
 };
 
 }  // namespace
 
 SurfaceSplit split_surface(const TriMesh& mesh, const std::vector<Vec3>& position,
-                           const SweepPlane& plane, double spacing) {
-    return Splitter(mesh, position, plane, spacing).run();
+                           const SweepPlane& plane, double spacing, const Insides& insides) {
+    return Splitter(mesh, position, plane, spacing, insides).run();
 }
 
 }  // namespace swage

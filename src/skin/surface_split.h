@@ -3,9 +3,11 @@
 // caps. Only who is whose corner is settled here; places and attributes are the caller's.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "geometry/trimesh.h"
+#include "skin/insides.h"
 #include "skin/sweep_plane.h"
 
 namespace swage {
@@ -16,6 +18,12 @@ struct CutPoint {
     double share;   // of the way from low to high
 };
 
+// A cap point on the surface, where what lies inside comes to it.
+struct RimPoint {
+    int low, high;  // raw: old vertices or cut points of one triangle
+    double share;   // of the way from low to high
+};
+
 struct SplitTriangle {
     Corners vertex;     // of the new surface
     Corners raw;        // where each comes from: old vertex, then cut point, then cap point
@@ -23,6 +31,7 @@ struct SplitTriangle {
     bool split;         // the parent was cut
     int side;           // of the plane, +1 or -1; 0 if it lies on both
     int neighbor = -1;  // of a cap: an old triangle at its rim
+    int inside = -1;    // of a cap: which of the Insides it shows
 };
 
 struct SplitVertex {
@@ -32,7 +41,8 @@ struct SplitVertex {
 
 struct SurfaceSplit {
     std::vector<CutPoint> cut;
-    std::vector<Vec3> cap_point;  // [m], inside the body, on the plane
+    std::vector<Vec3> cap_point;  // [m], inside the body or on its rim, on the plane
+    std::map<int, RimPoint> rim;  // of those, by what they are raw
     std::vector<SplitTriangle> triangle;
     // Vertices beyond the old ones, and the side of every old one that the cut runs through.
     std::vector<SplitVertex> added;
@@ -41,8 +51,9 @@ struct SurfaceSplit {
     int open_parts = 0;  // parts of the surface whose section does not close: cut, but not capped
 };
 
-// `position`: of the mesh's vertices now [m]. `spacing`: of the points inside the caps [m].
+// `position`: of the mesh's vertices now [m]. `spacing`: of the points inside the caps [m], whose
+// edges follow what `insides` meet of the plane.
 SurfaceSplit split_surface(const TriMesh& mesh, const std::vector<Vec3>& position,
-                           const SweepPlane& plane, double spacing);
+                           const SweepPlane& plane, double spacing, const Insides& insides = {});
 
 }  // namespace swage

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "geometry/disjoint_sets.h"
+
 namespace swage {
 
 namespace {
@@ -22,6 +24,34 @@ bool holds(const std::array<Vec2, 3>& t, const Vec2& p) {
     const double b = cross(t[2] - t[1], p - t[1]);
     const double c = cross(t[0] - t[2], p - t[2]);
     return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
+}
+
+// One sweep for each blade: triangles that hang together by corners.
+std::vector<std::vector<std::array<Vec3, 3>>> separate_sweeps(
+    const std::vector<std::array<Vec3, 3>>& sweep) {
+    std::map<std::array<double, 3>, int> first;
+    DisjointSets sets(sweep.size());
+    for (std::size_t t = 0; t < sweep.size(); ++t) {
+        for (const Vec3& p : sweep[t]) {
+            const auto [at, fresh] =
+                first.emplace(std::array<double, 3>{p[0], p[1], p[2]}, static_cast<int>(t));
+            if (!fresh) sets.unite(at->second, static_cast<int>(t));
+        }
+    }
+    std::vector<int> number;
+    std::vector<std::vector<std::array<Vec3, 3>>> separate(sets.number_sets(number));
+    for (std::size_t t = 0; t < sweep.size(); ++t) separate[number[t]].push_back(sweep[t]);
+    return separate;
+}
+
+// What of a sweep comes near the box.
+std::vector<std::array<Vec3, 3>> near_box(const std::vector<std::array<Vec3, 3>>& sweep,
+                                          const Box& box) {
+    std::vector<std::array<Vec3, 3>> near;
+    for (const std::array<Vec3, 3>& t : sweep) {
+        if (box_of({t.begin(), t.end()}).overlaps(box)) near.push_back(t);
+    }
+    return near;
 }
 
 }  // namespace
@@ -86,6 +116,23 @@ std::optional<SweepPlane> fit_sweep_plane(const std::vector<std::array<Vec3, 3>>
         if (use.count == 1) plane.outline.push_back(use.edge);
     }
     return plane;
+}
+
+SweepPlanes sweep_planes(const std::vector<std::array<Vec3, 3>>& sweep, const Box& box,
+                         double tolerance) {
+    SweepPlanes found;
+    for (const std::vector<std::array<Vec3, 3>>& one : separate_sweeps(sweep)) {
+        if (const auto plane = fit_sweep_plane(one, tolerance)) {
+            found.plane.push_back(*plane);
+            continue;
+        }
+        for (const std::vector<std::array<Vec3, 3>>& part : separate_sweeps(near_box(one, box))) {
+            const auto plane = fit_sweep_plane(part, tolerance);
+            if (plane) found.plane.push_back(*plane);
+            found.has_curved = found.has_curved || !plane;
+        }
+    }
+    return found;
 }
 
 }  // namespace swage

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "geometry/box.h"
 
 namespace swage {
 
@@ -26,5 +27,15 @@ struct SweepPlane {
 // Nothing when the triangles leave a common plane by more than `tolerance` [m], or have no area.
 std::optional<SweepPlane> fit_sweep_plane(const std::vector<std::array<Vec3, 3>>& sweep,
                                           double tolerance);
+
+// The planes that blades sweep, one each; of a path that has several, as of a blade that cuts,
+// draws back, goes aside and cuts again, those that part the box.
+struct SweepPlanes {
+    std::vector<SweepPlane> plane;
+    bool has_curved = false;
+};
+// `box`: of what may be parted. `tolerance`: as above.
+SweepPlanes sweep_planes(const std::vector<std::array<Vec3, 3>>& sweep, const Box& box,
+                         double tolerance);
 
 }  // namespace swage

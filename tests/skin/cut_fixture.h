@@ -27,7 +27,7 @@ inline Sweep sweep_of(const Vec3& point, const Vec3& normal, double reach) {
 inline std::size_t cap_triangles(const TriMesh& mesh) {
     std::size_t count = 0;
     for (const int material : mesh.triangle_material) {
-        count += material >= 0 && mesh.material[std::size_t(material)].name == kCutMaterial;
+        count += material >= 0 && is_cut_look(mesh.material[std::size_t(material)]);
     }
     return count;
 }
@@ -125,8 +125,8 @@ struct Fixture {
         follow();
     }
     void follow() { skin_positions(mount, matter, position); }
-    CutResult cut(const Sweep& sweep) {
-        const CutResult result = cut_skin(mesh, position, mount, matter, sweep);
+    CutResult cut(const Sweep& sweep, const Insides& insides = {}) {
+        const CutResult result = cut_skin(mesh, position, mount, matter, sweep, insides);
         follow();
         return result;
     }
