@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/body_look.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "skin/new_look.h"
+
 namespace swage {
 
 namespace {
@@ -33,6 +39,69 @@ void color_inside(const BodySpec& body, TriMesh& mesh) {
     if (!body.cut_color) return;
     if (mesh.material.empty()) mesh.material.emplace_back();
     for (SurfaceMaterial& material : mesh.material) material.inside = body.cut_color;
+}
+
+namespace {
+
+constexpr double kAlike = 0.05;  // linear RGB, that colours are not told apart by
+constexpr double kDark = 0.3, kStep = 0.6;
+constexpr int kMostSteps = 4;
+
+std::string name_of(const Material& material, std::size_t number) {
+    return cut_name(material.name == Material().name ? std::to_string(number) : material.name);
+}
+
+// Darker, or paler where it is dark.
+Vec3 another(const Vec3& color) {
+    if (color.maxCoeff() > kDark) return (1 - kStep) * color;
+    return color + kStep * (Vec3::Ones() - color);
+}
+
+// `others`: of the insets before it.
+SurfaceMaterial inset_look(const InsetSpec& inset, const SurfaceMaterial& cut,
+                           const std::vector<SurfaceMaterial>& others) {
+    SurfaceMaterial look = inset.look.value_or(cut);
+    const auto is_like = [&](const SurfaceMaterial& other) {
+        return (look.color - other.color).cwiseAbs().maxCoeff() < kAlike;
+    };
+    if (inset.color) {
+        look.color = *inset.color;
+        // Matt, as a body's colour is.
+        if (is_metal(look)) look.roughness = SurfaceMaterial().roughness;
+        look.metallic = 0;
+    } else {
+        // What says nothing of its look is told apart from all of them.
+        const auto is_taken = [&] {
+            return is_like(cut) ||
+                   (!inset.look && std::any_of(others.begin(), others.end(), is_like));
+        };
+        for (int n = 0; n < kMostSteps && is_taken(); ++n) look.color = another(look.color);
+    }
+    // As a saw leaves it.
+    if (is_metal(look)) look.roughness = std::max(cut.roughness, look.roughness);
+    return look;
+}
+
+}  // namespace
+
+std::vector<SurfaceMaterial> inset_looks(const BodySpec& body, const TriMesh& dressed) {
+    const SurfaceMaterial cut = cut_look(dressed);
+    std::vector<SurfaceMaterial> looks;
+    for (std::size_t n = 0; n < body.inset.size(); ++n) {
+        const InsetSpec& inset = body.inset[n];
+        SurfaceMaterial look = inset_look(inset, cut, looks);
+        look.name = name_of(inset.material, n + 1);
+        look.takes_colors = false;
+        const auto is_other = [&](const SurfaceMaterial& one) {
+            return one.name == look.name && one.color != look.color;
+        };
+        // Two of one material, of colours of their own.
+        if (std::any_of(looks.begin(), looks.end(), is_other)) {
+            look.name = fmt::format("{}_{}", look.name, n + 1);
+        }
+        looks.push_back(std::move(look));
+    }
+    return looks;
 }
 
 bool hides_material(const BodySpec& body, const TriMesh& mesh) {

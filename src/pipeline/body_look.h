@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "scene/spec.h"
 
@@ -13,6 +14,9 @@ std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& me
 
 // Gives all its materials the scene's colour of what lies under them, if it has one.
 void color_inside(const BodySpec& body, TriMesh& mesh);
+
+// How cut faces look that show its insets, of a skin that is `dressed`: one each.
+std::vector<SurfaceMaterial> inset_looks(const BodySpec& body, const TriMesh& dressed);
 
 // Whether the mesh says how it looks, and the scene does not, so that its material's look is not
 // seen.

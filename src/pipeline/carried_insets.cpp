@@ -67,23 +67,29 @@ void reach_out(const std::vector<char>& outer, double by, TriMesh& mesh) {
     }
 }
 
-TriMesh closed(const TriMesh& mesh) {
+TriMesh closed(const TriMesh& mesh, std::size_t number, std::vector<std::string>& findings) {
     const HoleCaps caps = caps_over_holes(mesh);
-    return caps.apex.empty() ? mesh : with_caps(mesh, caps);
+    if (caps.apex.empty()) return mesh;
+    findings.push_back(
+        fmt::format("the surface of inset {} was left open in {} place{} where it was cut or "
+                    "broke, and is closed by cones",
+                    number, caps.apex.size(), caps.apex.size() == 1 ? "" : "s"));
+    return with_caps(mesh, caps);
 }
 
 }  // namespace
 
-bool carries_insets(const SceneSpec& scene, std::size_t from_stage) {
+bool carries_insets(const SceneSpec& scene, std::size_t from_stage, bool is_molded) {
     if (scene.work_piece().inset.empty()) return false;
-    bool remolds = false;
     for (std::size_t s = from_stage; s < scene.stage.size(); ++s) {
-        remolds = remolds || scene.stage[s].remold;
+        const bool remolds = scene.stage[s].remold && !(is_molded && s == from_stage);
+        if (remolds || !scene.stage[s].machine.blade.empty()) return true;
     }
-    return remolds;
+    return false;
 }
 
-std::vector<CarriedInset> carry_insets(const std::vector<Inset>& insets, const TriMesh* body,
+std::vector<CarriedInset> carry_insets(const std::vector<Inset>& insets,
+                                       std::vector<SurfaceMaterial> looks, const TriMesh* body,
                                        const Aggregate& matter) {
     const double a = matter.lattice.spacing;
     Box box;
@@ -98,6 +104,7 @@ std::vector<CarriedInset> carry_insets(const std::vector<Inset>& insets, const T
         if (body != nullptr) reach_out(outer_triangles(one.mesh, *body, a), kReach * a, one.mesh);
         one.mount = mount_mesh(one.mesh.position, matter, SkinKind::mount);
         one.position = one.mesh.position;
+        one.look = std::move(looks.at(carried.size() - 1));
     }
     return carried;
 }
@@ -118,7 +125,19 @@ void cut_insets(std::vector<CarriedInset>& insets, const Aggregate& matter,
     }
 }
 
-std::vector<Inset> insets_now(const std::vector<CarriedInset>& insets, const Aggregate& matter) {
+Insides insides_now(const std::vector<CarriedInset>& insets) {
+    Insides insides;
+    for (const CarriedInset& one : insets) {
+        TriMesh surface;
+        surface.position = one.position;
+        surface.triangle = one.mesh.triangle;
+        insides.add(std::move(surface), one.look);
+    }
+    return insides;
+}
+
+std::vector<Inset> insets_now(const std::vector<CarriedInset>& insets, const Aggregate& matter,
+                              std::vector<std::string>& findings) {
     std::vector<Inset> now;
     for (std::size_t n = 0; n < insets.size(); ++n) {
         const CarriedInset& one = insets[n];
@@ -136,7 +155,7 @@ std::vector<Inset> insets_now(const std::vector<CarriedInset>& insets, const Agg
             mesh = broken.mesh, mount = &broken.mount;
         }
         skin_positions(*mount, matter, mesh.position);
-        now.push_back({closed(mesh), matter.inset[n]});
+        now.push_back({closed(mesh, n + 1, findings), matter.inset[n]});
     }
     return now;
 }

@@ -407,7 +407,7 @@ WorkPiece mold_stage_anew(const StageSpec& stage, std::size_t body, const WorkPi
                           const SceneSpec& scene) {
     const auto number = static_cast<std::size_t>(&stage - scene.stage.data());
     try {
-        return mold_anew(piece, scene.body[body], scene.skin, carries_insets(scene, number + 1));
+        return mold_anew(piece, scene.body[body], scene.skin, carries_insets(scene, number, true));
     } catch (const Error& error) {
         fail(error.code(), "{}: {}", stage.name, error.what());
     }

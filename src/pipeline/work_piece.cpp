@@ -322,7 +322,11 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     const std::vector<Inset> insets = read_insets(input, body, piece.finding);
     piece.matter = mold_with(input, body, insets, piece.finding);
     dress(input, body, skin, piece);
-    if (carries) piece.inset = carry_insets(insets, &input.to_mold(), piece.matter);
+    if (carries) {
+        const TriMesh& dressed = piece.look ? piece.look->mesh() : piece.skin;
+        piece.inset =
+            carry_insets(insets, inset_looks(body, dressed), &input.to_mold(), piece.matter);
+    }
     const StartSpec& start = body.start;
     const bool stands = !start.at && start.turn == Vec3::Zero();
     if (!stands || start.moves()) place_at_start(start, input.to_mold(), piece.matter);
@@ -357,12 +361,14 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     if (piece.inset.size() != piece.matter.inset.size()) {
         fail(ExitCode::stopped, "cannot mold anew: the insets' surfaces were not carried");
     }
-    const std::vector<Inset> insets = insets_now(piece.inset, piece.matter);
+    const std::vector<Inset> insets = insets_now(piece.inset, piece.matter, anew.finding);
+    std::vector<SurfaceMaterial> looks;
+    for (const CarriedInset& one : piece.inset) looks.push_back(one.look);
     const std::vector<double> masses = material_masses(piece.matter);
     anew.matter = mold(input.to_mold(), body.material, as_it_stands.mold, insets, &anew.finding,
                        insets.empty() ? nullptr : &masses);
     dress(input, as_it_stands, skin, anew);
-    if (carries) anew.inset = carry_insets(insets, nullptr, anew.matter);
+    if (carries) anew.inset = carry_insets(insets, std::move(looks), nullptr, anew.matter);
     const std::string divided = division_text(anew, input);
     if (!divided.empty()) log_info("{}", divided);
     // Pressed, drawn or where its pieces lie in each other, matter takes up another volume.
@@ -404,9 +410,12 @@ void hold_skin(WorkPiece& piece) {
 }
 
 CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep) {
+    const bool is_cut = !is_made_anew(piece);
+    const Insides insides = is_cut ? insides_now(piece.inset) : Insides();
     cut_insets(piece.inset, piece.matter, sweep);
-    if (is_made_anew(piece)) return {};
-    CutResult shown = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep);
+    if (!is_cut) return {};
+    CutResult shown =
+        cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep, insides);
     piece.is_torn = piece.is_torn || shown.has_curved;
     piece.is_parted = piece.is_parted || shown.planes > 0;
     if (piece.look) {
@@ -415,8 +424,8 @@ CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sw
         shown.open_parts = 0, shown.has_curved = false;
     }
     if (!piece.whole_skin) return shown;
-    CutResult whole =
-        cut_skin(*piece.whole_skin, piece.whole_position, piece.whole_mount, piece.matter, sweep);
+    CutResult whole = cut_skin(*piece.whole_skin, piece.whole_position, piece.whole_mount,
+                               piece.matter, sweep, insides);
     whole.open_parts = std::max(whole.open_parts, shown.open_parts);
     return whole;
 }

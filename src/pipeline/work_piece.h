@@ -71,7 +71,7 @@ struct WorkPiece {
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;
     std::vector<Vec3> whole_position;
-    std::vector<CarriedInset> inset;  // where a later stage molds it anew
+    std::vector<CarriedInset> inset;  // where a stage is yet to cut it or to mold it anew
 
     // The skin as a mesh where it is now.
     TriMesh deformed() const;

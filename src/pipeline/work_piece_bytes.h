@@ -98,8 +98,8 @@ void visit(Io& io, Mount& mount) {
 
 template <typename Io>
 void visit(Io& io, CarriedInset& inset) {
-    auto& [mesh, mount, position, is_torn] = inset;
-    io(mesh, mount, position, is_torn);
+    auto& [mesh, mount, position, is_torn, look] = inset;
+    io(mesh, mount, position, is_torn, look);
 }
 
 template <typename Io>

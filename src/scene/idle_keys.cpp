@@ -131,6 +131,14 @@ std::string tells_nothing(const std::string& field, const SceneSpec& scene) {
     return {};
 }
 
+bool cuts(const SceneSpec& scene) {
+    return scene.any_stage([](const StageSpec& s) { return !s.machine.blade.empty(); });
+}
+
+std::string unless_it_is_cut(const Section& at) {
+    return cuts(at.scene) ? "" : ": no machine cuts";
+}
+
 struct IdleKey {
     const char* key;
     Why why;
@@ -168,12 +176,13 @@ const std::vector<IdleKey> kOfMaterials = {
     {"stickiness", unless_something_strikes},
 };
 
+const std::vector<IdleKey> kOfInsets = {{"color", unless_it_is_cut}, {"look", unless_it_is_cut}};
+
 const std::vector<IdleKey> kOfMeshes = {
     {"cut_color",
      [](const Section& at) -> std::string {
-         const bool cuts =
-             at.scene.any_stage([](const StageSpec& s) { return !s.machine.blade.empty(); });
-         return cuts || at.scene.breaks() ? "" : ": no machine cuts, and no material breaks";
+         return cuts(at.scene) || at.scene.breaks() ? ""
+                                                    : ": no machine cuts, and no material breaks";
      }},
 };
 
@@ -329,6 +338,7 @@ void warn_of_idle_keys(const Node& root, const SceneSpec& scene, MistakeList& mi
     judge(kOfMeshes, {section(root, "mesh"), scene}, mistakes);
     judge(kOfMaterials, {section(root, "material"), scene, &work_piece.material}, mistakes);
     for (std::size_t n = 0; n < work_piece.inset.size(); ++n) {
+        judge(kOfInsets, {item("inset", n), scene}, mistakes);
         judge(kOfMaterials, {item("inset", n), scene, &work_piece.inset[n].material}, mistakes);
     }
     for (std::size_t b = 1; b < scene.body.size(); ++b) {

@@ -88,6 +88,12 @@ constexpr KeyHelp kSceneKeys[] = {
      "in place of file: a corner of a box, in fractions of the work-piece's box",
      "[x, y, z], each 0 to 1"},
     {"[[inset]]", "to", "the opposite corner", "[x, y, z], each 0 to 1"},
+    {"[[inset]]", "color",
+     "colour of it in faces that a blade cuts; left out: as its material looks, darker if that is "
+     "as the body's cut faces are",
+     "[red, green, blue], each 0 to 1"},
+    {"[[inset]]", "look", "look of it in faces that a blade cuts",
+     "{color = [red, green, blue], roughness, metalness, clear}, all 0 to 1", "-"},
 
     {"[mold]", "kind", "fill the shape of the mesh, or all of its box"},
     {"[mold]", "across", "number of cells across the thinnest side of the box"},

@@ -2,6 +2,7 @@
 #include "scene/read_inset.h"
 
 #include "scene/file_text.h"
+#include "scene/read_color.h"
 #include "scene/read_material.h"
 
 namespace swage {
@@ -9,8 +10,8 @@ namespace swage {
 namespace fs = std::filesystem;
 
 const std::vector<std::string>& keys_of_whole_bodies() {
-    static const std::vector<std::string> keys = {"mechanics",   "friction",   "static_friction",
-                                                  "restitution", "stickiness", "look"};
+    static const std::vector<std::string> keys = {"mechanics", "friction", "static_friction",
+                                                  "restitution", "stickiness"};
     return keys;
 }
 
@@ -56,8 +57,8 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
         if (table.find(key) == nullptr) continue;
         table.mistake(key, fmt::format("{} applies to the whole body: give it in [material]", key));
     }
-    std::optional<SurfaceMaterial> look;  // cut faces show the whole body's
-    read_material(table, assets, scene_folder, inset.material, look, inputs);
+    read_color(table, inset.color);
+    read_material(table, assets, scene_folder, inset.material, inset.look, inputs);
     return inset;
 }
 

@@ -32,7 +32,9 @@ struct InsetSpec {
     std::filesystem::path file;                   // absolute; empty: the box
     Vec3 from = Vec3::Zero(), to = Vec3::Ones();  // in shares of the work-piece's own box
     Material material;
-    Place place;  // where the scene says which
+    std::optional<Vec3> color;            // linear RGB, of cut faces that show it; none: as `look`
+    std::optional<SurfaceMaterial> look;  // of its material, where anyone says
+    Place place;                          // where the scene says which
 };
 
 // A place of a body to be followed.

@@ -75,6 +75,47 @@ TEST_CASE("cut faces have the colour that the scene gives the inside, however th
     }
 }
 
+TEST_CASE("cut faces show what lies inside, in all that a run leaves") {
+    const Scratch scratch;
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    const fs::path scene = scratch.path() / "cored.toml", out = scratch.path() / "out";
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"polyethylene\"\n"
+             "[[inset]]\nname = \"copper\"\nfrom = [0, 0.3, 0.2]\nto = [1, 0.7, 0.7]\n"
+             "[[inset]]\nname = \"lead\"\nfrom = [0, 0.8, 0]\nto = [1, 1, 1]\n"
+             "color = [0, 0, 1]\n"
+             "[mold]\nacross = 5\n[[stage]]\nmachine = \"bend\"\nangle = \"3 deg\"\nframes = 1\n"
+             "[[stage]]\nmachine = \"slice\"\nslices = 2\nframes = 2\nremold = true\n"
+             "[[stage]]\nmachine = \"slice\"\nslices = 3\nframes = 2\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    for (const auto& [name, cuts] : {std::pair("2-slice", 1), std::pair("3-slice", 3)}) {
+        const swage::TriMesh mesh = swage::read_mesh(out / "meshes" / (std::string(name) + ".obj"));
+        CHECK(swage::check_mesh(mesh).watertight);
+        CHECK(swage::surface_components(mesh).count == cuts + 1);
+        std::map<std::string, double> area;
+        for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+            area[mesh.material[mesh.triangle_material[t]].name] +=
+                0.5 * swage::area_vector(mesh.position, mesh.triangle[t]).norm();
+        }
+        // Bent and sliced across, nearly.
+        const double both = 2 * cuts * 0.02 * 0.02;
+        CHECK(area.at("cut_copper") == Approx(0.4 * 0.5 * both).epsilon(0.05));
+        CHECK(area.at("cut_lead") == Approx(0.2 * both).epsilon(0.05));
+        CHECK(area.at("cut") == Approx(0.6 * both).epsilon(0.05));
+        for (const swage::SurfaceMaterial& look : mesh.material) {
+            CHECK((look.name == "cut_lead") == ((look.color - swage::Vec3(0, 0, 1)).norm() < 1e-3));
+        }
+    }
+    const fs::path usd = scratch.path() / "all.usda";
+    REQUIRE(run_swage({"export", out.string(), "--out", usd.string()}).code == 0);
+    for (const char* name : {"cut_copper", "cut_lead"}) {
+        CHECK(bytes_of(usd).find(name) != std::string::npos);
+    }
+}
+
 TEST_CASE("pieces have one order, in meshes and in passes") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "two.toml", out = scratch.path() / "out";

@@ -40,6 +40,7 @@ WorkPiece piece_that_went_through_all(SkinKind skin) {
     body.inset.push_back(inset);
     WorkPiece piece = make_work_piece(input, body, {skin}, true);
     piece.inset.at(0).is_torn = true;
+    REQUIRE(piece.inset.at(0).look.name == "cut_core");
     Aggregate& m = piece.matter;
     REQUIRE(m.mixed_cell.size() > 2);
     const std::size_t particles = m.particle_count(), cells = m.cell_fill.size();

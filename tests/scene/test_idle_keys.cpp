@@ -133,6 +133,12 @@ TEST_CASE("looks of what cannot come about are told") {
         {"an inside that has no such colour",
          with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\ncut_color = [1, 0, 2]\n"),
          {"3:13: cut_color = [1, 0, 2]: red, green and blue must each be 0 to 1"}},
+        {"an inset that nothing cuts",
+         with(&Parts::rest,
+              "[[inset]]\nname = \"lead\"\nfrom = [0, 0, 0]\nto = [1, 1, 0.5]\n"
+              "color = [0, 1, 0]\nlook = {roughness = 1}\n"),
+         {"warning: color has no effect: no machine cuts",
+          "warning: look has no effect: no machine cuts"}},
         {"nothing yields",
          scene("rubber\"\n", bend,
                "[render]\ncolor = \"plastic_strain\"\n[output]\n"

@@ -104,6 +104,25 @@ TEST_CASE("a scene's look goes over its material's, and a body has that of its o
     CHECK_FALSE(body("name = \"plain\"\n", worn)[0].wears_material);
 }
 
+TEST_CASE("an inset has the look of its material, or another, and a colour") {
+    const auto inset = [](const std::string& more) {
+        const Parts parts = with(&Parts::rest,
+                                 "[[inset]]\nname = \"lead\"\nfrom = [0, 0, 0]\n"
+                                 "to = [1, 1, 0.5]\n" +
+                                     more);
+        const SceneFolder scratch;
+        const SceneReading reading =
+            read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
+        INFO(told(reading.mistakes, scratch.path()));
+        REQUIRE(reading.scene);
+        return reading.scene->work_piece().inset.at(0);
+    };
+    CHECK(inset("").look->metallic == 1);
+    CHECK_FALSE(inset("").color);
+    CHECK(inset("look = {roughness = 0.9}\n").look->roughness == 0.9);
+    CHECK(inset("color = [1, 0, 0]\n").color == Vec3::UnitX());
+}
+
 TEST_CASE("mistakes in looks are told at their places") {
     const std::string head = "[mesh]\nfile = \"bar.obj\"\n";
     Parts both = with(&Parts::mesh, head + "look = \"material\"\ncolor = [1, 0, 0]\n");
@@ -129,7 +148,12 @@ TEST_CASE("mistakes in looks are told at their places") {
         {"of an inset",
          with(&Parts::rest,
               "[[inset]]\nname = \"lead\"\nfrom = [0, 0, 0]\nto = [1, 1, 0.5]\n"
-              "look = {roughness = 1}\n"),
-         {"look applies to the whole body: give it in [material]"}},
+              "look = {roughness = 2}\nrestitution = 1\n"),
+         {"roughness = 2", "restitution applies to the whole body: give it in [material]"}},
+        {"a colour of an inset",
+         with(&Parts::rest,
+              "[[inset]]\nname = \"lead\"\nfrom = [0, 0, 0]\nto = [1, 1, 0.5]\n"
+              "color = [0, 2, 0]\n"),
+         {"color = [0, 2, 0]: red, green and blue must each be 0 to 1"}},
     });
 }
