@@ -168,7 +168,8 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.steps = cost.seconds = {};
     double way = 0;  // [byte], of the machine's, one after another
     WorkLoad load{.particles = cost.mold.particles,
-                  .longest = double(cost.mold.cell_count.maxCoeff())};
+                  .longest = double(cost.mold.cell_count.maxCoeff()),
+                  .thickness = cost.work_piece().thickness};
     for (std::size_t b = 0; b < input.size(); ++b) {
         const double a = cost.body[b].spacing;
         load.surface_points += kPointsPerFace * surface_area(input[b].to_mold()) / (a * a);

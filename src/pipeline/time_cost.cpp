@@ -39,12 +39,18 @@ constexpr CostRange kImplicitStep = {3e-6, 150e-6};  // of each particle [s]
 
 // Under tools, or after a cut: iterations of relaxation an equilibrium, equilibria a frame where
 // they are not counted, and what an iteration takes of a particle and a point of the surface [s].
-// What is longer takes longer to settle: as (cells / kUsualLength)^kSettling.
+// What is longer takes longer to settle: as (cells / kUsualLength)^kSettling; what may bend, which
+// is slow, as its length over its thickness (80, 145, 250 and 485 an equilibrium at 20, 40, 80 and
+// 160, the same of 1 to 3 layers); and all as the fastest swings, of pressure waves, are faster
+// than E has them (1, 1.2, 1.9 and 4.2 times at a Poisson's ratio of 0, 0.3, 0.45 and 0.49).
 constexpr CostRange kIterations = {35, 420}, kEquilibria = {1, 2.5};
 constexpr double kRelaxed = 75e-9, kRelaxedPoint = 15e-9;
 constexpr double kUsualLength = 60, kSettling = 0.4;
+constexpr double kUsualSlenderness = 20, kBending = 0.9;
+constexpr double kUsualPoissonRatio = 0.3;
 // Where nothing touches: of an equilibrium, each particle [s], by Newton's method, of which a step
-// takes this; where much flows at once it gives up, and relaxation goes on.
+// takes this; where much flows at once, or loads bend a body far, it gives up, and relaxation goes
+// on.
 constexpr CostRange kSmooth = {6e-6, 90e-6}, kYielding = {6e-6, 120e-6};
 constexpr double kNewtonStep = 3.5e-6;
 // A crack that runs is found again and again: equilibria for one where nothing breaks, under tools
@@ -76,6 +82,25 @@ double euler_steps(const SceneSpec& scene) {
     return (std::sqrt(1 + largest * largest) - largest) / std::max(least, 1e-6);
 }
 
+// Of pressure waves' modulus, over Young's.
+double wave_modulus(double nu) { return (1 - nu) / ((1 + nu) * (1 - 2 * nu)); }
+
+// Iterations that an equilibrium takes at the most.
+double most_iterations(const SceneSpec& scene, const WorkLoad& load) {
+    double fastest = 0;
+    for (const BodySpec& body : scene.body) {
+        const bool has_cells = body.material.mechanics == Mechanics::cells;
+        for (const Material* m : body.materials()) {
+            const double nu = has_cells ? m->poisson_ratio : 0.25;
+            fastest = std::max(fastest, wave_modulus(nu) / wave_modulus(kUsualPoissonRatio));
+        }
+    }
+    const double slender = load.longest / std::max(1.0, load.thickness) / kUsualSlenderness;
+    return kIterations.most * std::sqrt(std::max(1.0, fastest)) *
+           std::max(1.0, portable::pow(load.longest / kUsualLength, kSettling)) *
+           std::max(1.0, portable::pow(slender, kBending));
+}
+
 // The energy of motion with which a body strikes, in shares of what each cubic metre holds.
 double struck(const Material& m, double speed, double holds) {
     return 0.5 * m.density * speed * speed / holds;
@@ -102,8 +127,7 @@ double sure_speed(const SceneSpec& scene, const StageSpec& stage, const BodySpec
     const Vec3 up = direction_of(stage.up == WorldAxis::automatic ? WorldAxis::y : stage.up);
     const double down = -body.start.velocity.dot(up);
     const auto drop = stage.parameter.find("drop");
-    const bool arrives =
-        drop == stage.parameter.end() || down * stage.duration > drop->second;
+    const bool arrives = drop == stage.parameter.end() || down * stage.duration > drop->second;
     return arrives ? std::max(0.0, down) : 0;
 }
 
@@ -142,27 +166,30 @@ StageTime relaxed(const SceneSpec& scene, const StageSpec& stage, const WorkLoad
     if (!touches) count = {double(stage.frames), 1.5 * stage.frames};
     if (equilibria > 0) count = {double(equilibria), 1.1 * double(equilibria)};
     if (scene.breaks()) count.most *= touches ? kCracking : kCrackingAlong;
-    if (!touches) {
-        const CostRange each = (scene.yields() || scene.breaks() ? kYielding : kSmooth);
-        const CostRange seconds = {count.least * each.least * load.particles,
-                                   count.most * each.most * load.particles};
-        const double last = scene.yields() || scene.breaks() ? kRelaxed : kNewtonStep;
-        return {{seconds.least / (kNewtonStep * load.particles),
-                 seconds.most / (last * load.particles)},
-                seconds};
-    }
-    const double longer = std::max(1.0, portable::pow(load.longest / kUsualLength, kSettling));
-    const CostRange steps = {count.least * kIterations.least,
-                             count.most * kIterations.most * longer};
+    const double iterations = most_iterations(scene, load);
     const double each = kRelaxed * load.particles + kRelaxedPoint * load.surface_points;
+    if (!touches) {
+        const bool changes = scene.yields() || scene.breaks();
+        const CostRange smooth = (changes ? kYielding : kSmooth).times(load.particles);
+        const double last = changes ? kRelaxed : kNewtonStep;
+        StageTime time = {{count.least * smooth.least / (kNewtonStep * load.particles),
+                           count.most * smooth.most / (last * load.particles)},
+                          {count.least * smooth.least, count.most * smooth.most}};
+        if (!stage.machine.load.empty() || stage.sim.gravity != Vec3::Zero()) {
+            time.steps.most += count.most * iterations;
+            time.seconds.most += count.most * iterations * each * kMachine.most;
+        }
+        return time;
+    }
+    const CostRange steps = {count.least * kIterations.least, count.most * iterations};
     return {steps, {steps.least * each * kMachine.least, steps.most * each * kMachine.most}};
 }
 
 StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load) {
     const Strikes by = strikes(scene, stage);
     const bool is_driven = !stage.machine.stands() || !stage.machine.load.empty();
-    const double elastic = std::max(double(stage.frames),
-                                    (stage.duration - load.flight) * load.steps_per_second);
+    const double elastic =
+        std::max(double(stage.frames), (stage.duration - load.flight) * load.steps_per_second);
     CostRange steps = {elastic, elastic};
     if (scene.yields()) {
         const double driven = is_driven ? kFlattenedByMachines : 1;

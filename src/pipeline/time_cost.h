@@ -23,6 +23,7 @@ struct CostRange {
 struct WorkLoad {
     double particles = 0, surface_points = 0;
     double longest = 0;           // cells along the longest way through the work-piece
+    double thickness = 1;         // of it, or of its thin parts, in cells
     double steps_per_second = 0;  // explicit ones, of the body that needs the most
     double flight = 0;            // of a stage that they take no steps for, nothing being near [s]
 };

@@ -157,3 +157,26 @@ TEST_CASE("the same scene is told the same, and never longer with another thread
     }
     set_thread_count(before);
 }
+
+TEST_CASE("thin and incompressible plates that may bend are told more at the most than stout ones") {
+    const auto iterations = [](const char* shape, double poisson_ratio, bool tools) {
+        Work work(Solver::quasistatic, tools);
+        work.input.mesh = make_shape(shape, {}).mesh;
+        work.scene.body[0].mold.across = 1;
+        work.scene.body[0].material.poisson_ratio = poisson_ratio;
+        if (!tools) work.scene.stage[0].sim.gravity = {0, -9.81, 0};
+        RunOptions options;
+        options.draw = false;
+        return estimate_cost(work.scene, {work.input}, options).steps;
+    };
+    for (const bool tools : {false, true}) {
+        INFO(tools);
+        const CostRange bar = iterations("bar", 0.3, tools),
+                        sheet = iterations("sheet", 0.3, tools);
+        CHECK(sheet.most > 1.8 * bar.most);  // 50 times as long as thick, not 10
+        CHECK(sheet.least == bar.least);
+        // Pressure waves' modulus is 13 times as much.
+        CHECK(iterations("bar", 0.49, tools).most > 2 * bar.most);
+        CHECK(iterations("bar", 0.3, tools).most == bar.most);
+    }
+}
