@@ -197,9 +197,10 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
                                      {cost.mold.bytes, cost.mold.particles, cost.mold.active_cells,
                                       load.surface_points / kPointsPerFace, vertices, way},
                                      stills > 0);
-    const DiskShare disk = {double(cost.frames), stills,          cost.mold.active_cells,
-                            cost.mold.particles, cost.mold.bytes, vertices,
-                            cost.seconds.most};
+    const DiskShare disk = {double(cost.frames),    stills,
+                            cost.mold.active_cells, cost.mold.particles,
+                            cost.mold.bytes,        vertices,
+                            cost.seconds.most,      load.surface_points / kPointsPerFace};
     cost.disk_bytes = disk_bytes(scene, input, disk);
     cost.least_disk_bytes = least_disk_bytes(scene, input, disk);
     const double drawing = drawing_time(scene.render, stills);

@@ -2,6 +2,7 @@
 #include "pipeline/disk_cost.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/draw.h"
 #include "pipeline/stage_keeper.h"
@@ -27,8 +28,11 @@ constexpr double kFieldBytes = 4;                       // of a vertex, there an
 constexpr double kFrameBytes = 1000;                    // of poses and curves
 constexpr double kBodyFrameBytes = 400;                 // of its motion
 constexpr double kStageBytes = 60e3, kRunBytes = 20e3;  // of plots and records
-// A cell, on the faces where matter broke, plane and rough.
-constexpr double kBrokenVertices = 3, kRoughVertices = 7;
+// Of a body that is broken to its particles: of each of them, a cell's corners and, on rough faces,
+// what is between these; and of a mounted mesh where cuts between them cross its edges, over the
+// root of its vertices times the faces of cells that its area has.
+constexpr double kBrokenVertices = 8, kRoughVertices = 26;
+constexpr double kCrossings = 9, kRoughCrossings = 15;
 constexpr double kCurvePointBytes = 90;  // of a flow curve in run.json
 // What is kept within a stage in motion, to what is after one, but for images: 1.33 and 1.47 were
 // measured (rubber of 69,742 particles that falls, copper of 17,386 that strikes).
@@ -146,7 +150,10 @@ double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& in
 
 double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, DiskShare of) {
     if (scene.breaks()) {
-        of.vertices += of.cells * (scene.skin.roughness > 0 ? kRoughVertices : kBrokenVertices);
+        const bool is_rough = scene.skin.roughness > 0 && scene.skin.kind != SkinKind::boundary;
+        of.vertices +=
+            of.particles * (is_rough ? kRoughVertices : kBrokenVertices) +
+            std::sqrt(of.vertices * of.faces) * (is_rough ? kRoughCrossings : kCrossings);
     }
     double images = 0;
     for (const InputMesh& one : input) images += embedded_bytes(one.mesh);

@@ -16,6 +16,7 @@ struct DiskShare {
     double matter;       // [byte] in memory
     double vertices;     // of skins
     double seconds = 0;  // of simulation, at the most
+    double faces = 0;    // of cells, as the bodies' surfaces have area for
 };
 
 // What is kept of a run after a stage [byte].

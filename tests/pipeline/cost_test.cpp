@@ -394,3 +394,26 @@ TEST_CASE("what a process has taken already is not free for its run") {
     set_thread_count(0);
     ::setrlimit(RLIMIT_AS, &before);
 }
+
+// Of a ball of glass that was broken to its particles, 613 of them, on its rough faces.
+TEST_CASE("the most disk that is told holds the meshes of a body in crumbs, the least does not") {
+    InputMesh ball;
+    ball.mesh = make_shape("sphere", {}).mesh;
+    SceneSpec scene;
+    scene.body.resize(1);
+    scene.body[0].mold.across = 8;
+    scene.body[0].material.strength = 1e6;
+    scene.stage.resize(1);
+    scene.stage[0].frames = 12;
+    scene.stage[0].sim.solver = Solver::explicit_steps;
+    scene.output.meshes_per_frame = true;
+    RunOptions options;
+    options.draw = false;
+    const RunCost told = estimate_cost(scene, {ball}, options);
+    CHECK(told.disk_bytes > 134e6);  // taken
+    CHECK(told.least_disk_bytes < 10e6);
+    scene.skin.roughness = 0;
+    const double smooth = estimate_cost(scene, {ball}, options).disk_bytes;
+    CHECK(smooth > 60e6);
+    CHECK(smooth < 0.7 * told.disk_bytes);
+}
