@@ -5,6 +5,8 @@
 #include <limits>
 #include <set>
 
+#include "base/expression.h"
+#include "base/text_error.h"
 #include "base/units.h"
 #include "machines/load_name.h"
 #include "machines/tool_clash.h"
@@ -165,6 +167,56 @@ std::string clamped_note(const Load& load, const std::vector<Grip>& grips) {
     return load_name(load.name) + " does nothing: all that it acts on is clamped";
 }
 
+// What knows these alone is judged with a place in its file, as that is read.
+bool is_judged_as_read(const Expression& one, const std::vector<std::string>& known) {
+    try {
+        return one.empty() || (Formula(one.text, known), true);
+    } catch (const TextError&) {
+        return false;
+    }
+}
+
+// Of loads, and gravity, that come to nothing by what the work-piece or a parameter is.
+std::vector<std::string> nothing_notes(const Machine& machine) {
+    const std::vector<LoadSpec>& spec = machine.spec.load;
+    std::vector<double> most(spec.size() + 1, 0.0);
+    try {
+        for (int look = 0; look <= kLooks; ++look) {
+            const std::vector<double> now = strengths_at(machine, double(look) / kLooks);
+            for (std::size_t n = 0; n < now.size(); ++n) {
+                most[n] = std::max(most[n], std::abs(now[n]));
+            }
+        }
+    } catch (const PlacedError&) {  // the stage tells that itself
+        return {};
+    }
+    std::vector<std::string> notes;
+    const std::vector<std::string> timed = {"t", "duration"};
+    for (std::size_t n = 0; n < spec.size(); ++n) {
+        const Load& load = machine.apparatus.load[n];
+        const bool is_nothing = load.force.empty()
+                                    ? load.pressure == 0
+                                    : std::all_of(load.force.begin(), load.force.end(),
+                                                  [](const Vec3& f) { return f == Vec3::Zero(); });
+        const auto is_read = [](const Expression& one) { return is_judged_as_read(one, {}); };
+        const bool is_told = spec[n].force ? std::ranges::all_of(*spec[n].force, is_read)
+                                           : is_read(spec[n].pressure);
+        if (is_nothing && !is_told) {
+            notes.push_back(fmt::format("{} does nothing: its {} is 0 at this work-piece",
+                                        load_name(load.name),
+                                        spec[n].force ? "force" : "pressure"));
+        } else if (!is_nothing && most[n] == 0 && !is_judged_as_read(spec[n].strength, timed)) {
+            notes.push_back(load_name(load.name) +
+                            " does nothing: its strength is 0 throughout at this work-piece");
+        }
+    }
+    const Expression& gravity = machine.spec.gravity_strength;
+    if (machine.gravity_strength && most.back() == 0 && !is_judged_as_read(gravity, timed)) {
+        notes.push_back("gravity does nothing: its strength is 0 throughout at this work-piece");
+    }
+    return notes;
+}
+
 }  // namespace
 
 std::vector<std::string> start_notes(const Machine& machine, const Aggregate& matter,
@@ -201,6 +253,7 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
         note(miss_note(machine, n, way_of(machine.blade_motion[n]), spacing));
     }
     for (const Load& load : apparatus.load) note(clamped_note(load, apparatus.grip));
+    for (std::string& nothing : nothing_notes(machine)) note(std::move(nothing));
     of_jumps("tool ", apparatus.tool, machine.tool_motion, machine.work_from_tool);
     of_jumps("grip ", apparatus.grip, machine.grip_motion, machine.work_from_grip);
     of_jumps("blade ", apparatus.blade, machine.blade_motion, machine.work_from_blade);

@@ -249,3 +249,41 @@ TEST_CASE("a load on nothing but what grips clamp is noted, and one on more is n
     CHECK(notes(Side::top).empty());
     CHECK(notes(Side::left, {true, false, true}).empty());
 }
+
+TEST_CASE("loads that come to nothing at this work-piece are noted, and those that act are not") {
+    const auto notes = [](const Expression3& force, const char* strength,
+                          const char* gravity = "") {
+        MachineSpec spec;
+        spec.name = "vice";
+        spec.grip = {vice_grips()[0]};
+        LoadSpec load;
+        load.name = "wind";
+        load.on = Side::top;
+        load.force = force;
+        load.strength = strength;
+        spec.load = {load};
+        if (*gravity != 0) spec.gravity_strength = gravity;
+        return notes_of(spec);
+    };
+    const Expression3 push = {"0", "-1 N", "0"};
+    CHECK(tells(notes({"0", "0*height", "0"}, "t"),
+                "load wind does nothing: its force is 0 at this work-piece"));
+    CHECK(tells(notes(push, "t*(height > length)"),
+                "load wind does nothing: its strength is 0 throughout at this work-piece"));
+    CHECK(tells(notes(push, "t", "max(0, height - length)"),
+                "gravity does nothing: its strength is 0 throughout at this work-piece"));
+    CHECK(notes({"0", "0*height", "1 N"}, "t").empty());
+    CHECK(notes(push, "t*(height < length)").empty());
+    CHECK(notes(push, "t", "1*height").empty());
+    // A scene's text tells these by itself.
+    CHECK(notes({"0", "0", "0"}, "t").empty());
+    CHECK(notes(push, "0*t").empty());
+
+    MachineSpec spec;
+    spec.name = "vice";
+    spec.grip = {vice_grips()[0]};
+    spec.load.resize(1);
+    spec.load[0].name = "wind";
+    spec.load[0].pressure = "5*(height > length)";
+    CHECK(tells(notes_of(spec), "load wind does nothing: its pressure is 0 at this work-piece"));
+}
