@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "machines/machine.h"
 
@@ -36,10 +38,21 @@ WorkFrame place_work_frame(const Aggregate& matter, WorldAxis axis, WorldAxis up
     }
     if (up == WorldAxis::automatic && !upright && x.y() != 0) y = Vec3::UnitZ();
     if (x.cross(y).norm() == 0) {
+        if (axis != WorldAxis::automatic) {
+            fail(ExitCode::scene,
+                 "up = \"{}\" lies along the work-piece's axis ({}); choose another up, or an axis "
+                 "across it",
+                 name_of(up), name_of(axis));
+        }
+        std::string across;
+        for (const WorldAxis other : {WorldAxis::x, WorldAxis::y, WorldAxis::z}) {
+            if (direction_of(other).cross(y).norm() == 0) continue;
+            across += fmt::format("{}\"{}\"", across.empty() ? "" : " or ", name_of(other));
+        }
         fail(ExitCode::scene,
-             "up = \"{}\" lies along the work-piece's axis ({}); choose another up, or an axis "
-             "across it",
-             name_of(up), axis == WorldAxis::automatic ? "its longest side" : name_of(axis));
+             "up = \"{}\" lies along the longest side of the work-piece as it is now, which is its "
+             "axis where none is given; set axis = {}, or another up",
+             name_of(up), across);
     }
     Mat3 axes;
     axes << x, y, x.cross(y);

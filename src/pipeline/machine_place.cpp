@@ -243,6 +243,17 @@ std::optional<Machine> later_machine(const StageSpec& stage, const Aggregate& wo
     }
 }
 
+// What is pressed or drawn may have another longest side by then, and that may be up.
+std::string axis_note(const StageSpec& stage, const WorkFrame& frame) {
+    const bool may_be_refused = stage.axis == WorldAxis::automatic &&
+                                stage.up != WorldAxis::automatic && !stage.machine.upright;
+    if (!may_be_refused) return {};
+    return fmt::format(
+        "its axis is the longest side, and is refused where the stages before make that lie along "
+        "up = \"{}\"; axis = \"{}\" keeps it",
+        name_of(stage.up), name_of(world_axes(frame)[0]));
+}
+
 }  // namespace
 
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
@@ -268,6 +279,11 @@ std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& 
         place.push = push_texts(*machine);
         place.tools = tools_text(stage, machine->frame);
         place.note = machine->notes;
+        if (later) {
+            if (std::string amiss = axis_note(stage, machine->frame); !amiss.empty()) {
+                place.note.push_back(std::move(amiss));
+            }
+        }
     }
     return places;
 }

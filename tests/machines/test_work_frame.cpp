@@ -83,3 +83,19 @@ TEST_CASE("the longest side is that of the skin, whatever samples of the surface
 TEST_CASE("a body without a surface has no place for a machine") {
     CHECK_THROWS_AS(place_work_frame(Aggregate{}), Error);
 }
+
+TEST_CASE("where up lies along the longest side it is told which axes to set") {
+    const auto refusal = [](WorldAxis axis) {
+        try {
+            place_work_frame(bar(0, Vec3::Zero()), axis, WorldAxis::minus_x);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    CHECK(
+        refusal(WorldAxis::automatic) ==
+        "up = \"-x\" lies along the longest side of the work-piece as it is now, which is its axis "
+        "where none is given; set axis = \"y\" or \"z\", or another up");
+    CHECK(refusal(WorldAxis::x).ends_with("axis (x); choose another up, or an axis across it"));
+}
