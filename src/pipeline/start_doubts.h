@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the first stage cannot come to, by how the work-piece lies before it.
+// What stages cannot come to, by how the bodies lie before them.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace swage {
 
-// Of a single body that nothing takes hold of: whether it reaches the floor in the time that the
-// stage has, and whether loads lift it off what it lies on. Only what is certain is told.
+// Of what nothing takes hold of: whether it reaches the floor in the time that the first stage has,
+// and whether loads or gravity take it off what it lies on, in that and in later ones. Only what is
+// certain is told.
 std::vector<std::string> doubts_of_start(const SceneSpec& scene,
                                          const std::vector<NamedMatter>& bodies);
 

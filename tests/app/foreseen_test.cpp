@@ -112,6 +112,19 @@ TEST_CASE("a body that cannot reach the floor in its stage is told how long it w
     CHECK(says(told(weight + "slope = \"60 deg\"\nduration = \"0.7 s\"\n"), "falls for 0.903 s"));
     CHECK(!says(told(weight + brief + "[[stage.load]]\nforce = [0, \"-900 N\", 0]\non = \"top\"\n"),
                 "touch"));
+    // A medium slows what falls, and stops what flies up before gravity would.
+    const std::string air = "medium_density = 1.2\n";
+    CHECK(says(told(weight + brief + air), "falls for more than 0.639 s before it touches floor"));
+    CHECK(says(told(weight + brief + air, "velocity = [0, \"3 m/s\", 0]\n"),
+               "falls for more than 0.639 s"));
+    // Bodies that fly alike do not meet.
+    const auto two = [&](const std::string& spin) {
+        return told_of(Bar("[[stage]]\nmachine = \"floor\"\nframes = 2\ndrop = \"2 m\"\n" + weight +
+                           brief + "[[body]]\nname = \"other\"\nfile = \"bar.obj\"\n" +
+                           "at = [0, \"4 cm\", 0]\n" + spin));
+    };
+    CHECK(says(two(""), "work-piece falls for 0.639 s before it touches floor"));
+    CHECK(!says(two("spin = [0, 0, \"9 rad/s\"]\n"), "before it touches"));
 }
 
 TEST_CASE("loads that lift off what nothing holds are told, and a run says that it is lifted off") {
@@ -139,4 +152,53 @@ TEST_CASE("loads that lift off what nothing holds are told, and a run says that 
     CHECK(run.code == 6);
     CHECK(!says(run.err, "if the matter flows"));
     CHECK(says(run.err, "no tool touches it any more: the loads lift it off"));
+}
+
+TEST_CASE("what loads or gravity take off its rests is told of each stage, and only what is so") {
+    const auto stage = [](const std::string& load, const std::string& keys) {
+        return "[[stage]]\nmachine = \"shelf\"\nframes = 4\n" + keys +
+               (load.empty() ? "" : "[[stage.load]]\n" + load);
+    };
+    const auto bar = [&](const std::string& load, const std::string& keys,
+                         const std::string& material = "structural_steel") {
+        return told_of(Bar(stage(load, keys), material));
+    };
+    const std::string weight = "gravity = 9.81\n";
+    // Of 6.16 N; the rests lie 18 cm apart, the end 19 cm from the farther one.
+    const auto at_end = [](const std::string& up) {
+        return "on = \"right\"\nforce = [0, \"" + up + "\", 0]\n";
+    };
+    const std::string tipped =
+        "the loads tip the work-piece as it lies on left and right, and too little";
+    CHECK(says(bar(at_end("4 N"), weight), tipped));
+    CHECK(!says(bar(at_end("2 N"), weight), "tip the work-piece"));
+    CHECK(says(bar(at_end("-300 N"), weight), tipped));
+    CHECK(!says(bar(at_end("-40 N"), weight), "tip the work-piece"));
+    // What is as soft as this lifts an end and stays.
+    CHECK(!says(bar(at_end("0.45 N"), weight, "rubber"), "tip the work-piece"));
+
+    CHECK(says(bar("", "gravity = [0, 9.81, 0]\n"), "gravity presses the work-piece onto no tool"));
+    CHECK(says(bar("", "gravity = [9.81, 0, 0]\n"), "gravity presses the work-piece onto no tool"));
+    CHECK(!says(bar("", weight), "onto no tool"));
+    const std::string top = "on = \"top\"\nforce = [0, \"5 N\", 0]\nstrength = \"1\"\n";
+    CHECK(says(bar(top, weight + "gravity_strength = \"t\"\n"),
+               "the loads lift the work-piece with 5 N at 33.3 ms, it weighs 1.54 N then"));
+    CHECK(!says(bar(top, weight + "gravity_strength = \"ramp(t, 0, 0.25)\"\n"), "lift"));
+    // Later stages too, if nothing was cut or thrown before.
+    const std::string lifts = stage("on = \"top\"\nforce = [0, \"50 N\", 0]\n", weight);
+    const std::string second = "2-shelf: the loads lift the work-piece";
+    CHECK(says(told_of(Bar(stage("", weight) + lifts, "structural_steel")), second));
+    CHECK(!says(
+        told_of(Bar("[[stage]]\nmachine = \"cut\"\nframes = 2\n" + lifts, "structural_steel")),
+        second));
+}
+
+TEST_CASE("a later stage that another longest side would refuse is told what keeps its axis") {
+    const auto bent = [](const std::string& keys) {
+        return told_of(Bar(kStretch + "0.01\n[[stage]]\nmachine = \"bend\"\nframes = 1\n" + keys));
+    };
+    const std::string keeps = "lie along up = \"z\"; axis = \"x\" keeps it";
+    CHECK(says(bent("up = \"z\"\n"), keeps));
+    CHECK(!says(bent("up = \"z\"\naxis = \"x\"\n"), "keeps it"));
+    CHECK(!says(bent(""), "keeps it"));
 }
