@@ -95,6 +95,22 @@ double flow_gave(const StageEnd& end) {
     return std::max(0.0, -end.last.plastic);
 }
 
+std::string flow_text(const StageEnd& end, double by_flow, double share) {
+    bool springs = false;
+    for (const WorkPiece& body : end.bodies) {
+        springs = springs ||
+                  (body.matter.yields() && body.matter.material.mechanics == Mechanics::springs);
+    }
+    return fmt::format(
+        "the energy books do not close: plastic flow has given {:.3g} J, {:.3g} % of the energy "
+        "involved is from nowhere, and it should only take some; {}",
+        by_flow, 100 * share,
+        springs ? "springs that flow far fold within single cells, which mechanics = \"cells\" "
+                  "does not"
+        : in_motion(end.stage.sim.solver) ? "try a lower step_safety or smaller cells"
+                                          : "try more frames or smaller cells");
+}
+
 // Of what the bodies began with and were given, of what the books hold by now or of the most that
 // was stored on the way, the share that is missing or too much. Fracture and flow take energy: what
 // they give is from nowhere. What contacts held at the start and were let go of has no part in it:
@@ -341,11 +357,15 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
         for (const std::string& one : idle_parts(end)) warn(one);
     }
     if (const std::string pressed = pressed_at_start(end); !pressed.empty()) warn(pressed);
+    const double by_flow = flow_gave(end);
     const double share =
-        unaccounted(end.first, end.last, end.totals.stored, unresolved(end), flow_gave(end));
+        unaccounted(end.first, end.last, end.totals.stored, unresolved(end), by_flow);
     const double taken = end.last.friction + end.last.plastic;
     // At rest, what snaps or slips through is lost, and no mistake.
-    if (in_motion(sim.solver) ? std::abs(share) > kMostGain : share < -kMostGain) {
+    const bool is_open = in_motion(sim.solver) ? std::abs(share) > kMostGain : share < -kMostGain;
+    if (is_open && share < 0 && by_flow > -end.last.remainder) {
+        warn(flow_text(end, by_flow, -share));
+    } else if (is_open) {
         warn(fmt::format("the energy books do not close: {:.3g} % of the energy involved is {}; {}",
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
                          how_to_close(sim.solver, end.last)));

@@ -202,6 +202,9 @@ TEST_CASE("energy that flow gives is from nowhere, but what a back stress has st
     CHECK_FALSE(is_open(told(0.3 * work)));
     CHECK_FALSE(is_open(told(-0.01 * work)));
     CHECK(is_open(told(-0.3 * work)));
+    const std::string given = "plastic flow has given";
+    CHECK(told(-0.3 * work).find(given) != std::string::npos);
+    CHECK(bar.told(-work, -work).find(given) == std::string::npos);
     bar.bodies[0].matter.material.back_stress = 1e7;
     bar.bodies[0].matter.material.back_strain = 0.1;
     CHECK_FALSE(is_open(told(-0.3 * work)));
