@@ -204,7 +204,8 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.disk_bytes = disk_bytes(scene, input, disk);
     cost.least_disk_bytes = least_disk_bytes(scene, input, disk);
     const double drawing = drawing_time(scene.render, stills);
-    cost.seconds.add(writing_time(scene, cost.frames, cost.disk_bytes, cost.mold.particles));
+    cost.seconds.add(writing_time(scene, cost.frames, {cost.least_disk_bytes, cost.disk_bytes},
+                                  cost.mold.particles));
     cost.hangs_on = cost.seconds.is_narrow() ? "" : what_time_hangs_on(scene);
     cost.seconds.add({0.6 * drawing, 1.2 * drawing});
     // What is small, or goes from one equilibrium to the next, has little for more of them.

@@ -241,10 +241,11 @@ StageTime stage_time(const SceneSpec& scene, const StageSpec& stage, const WorkL
              tools * steps * load.particles * kImplicitStep.most}};
 }
 
-CostRange writing_time(const SceneSpec& scene, double frames, double bytes, double particles) {
+CostRange writing_time(const SceneSpec& scene, double frames, const CostRange& bytes,
+                       double particles) {
     bool parts = scene.breaks();
     for (const StageSpec& stage : scene.stage) parts = parts || !stage.machine.blade.empty();
-    CostRange seconds = {0.2 * kSecondsPerByte * bytes, kSecondsPerByte * bytes};
+    CostRange seconds = {0.5 * kSecondsPerByte * bytes.least, kSecondsPerByte * bytes.most};
     if (parts || scene.skin.kind == SkinKind::boundary) {
         seconds.add(kSkins.times(frames * particles));
     }

@@ -41,7 +41,8 @@ StageTime stage_time(const SceneSpec& scene, const StageSpec& stage, const WorkL
 double more_steps(const SceneSpec& scene, Solver solver);
 
 // Skins that are made anew, and all files of a run but for pictures [byte].
-CostRange writing_time(const SceneSpec& scene, double frames, double bytes, double particles);
+CostRange writing_time(const SceneSpec& scene, double frames, const CostRange& bytes,
+                       double particles);
 
 // Of one core.
 double drawing_time(const RenderSettings& render, double stills);
