@@ -15,6 +15,7 @@
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
 #include "pipeline/touching_points.h"
+#include "sim/free_flight.h"
 
 namespace swage {
 
@@ -65,7 +66,7 @@ std::string flight_doubt(const SceneSpec& scene, const Machine& machine,
                          const std::vector<NamedMatter>& bodies) {
     const StageSpec& stage = scene.stage.front();
     const SimSettings& sim = stage.sim;
-    const bool drags = sim.medium_density * sim.drag_coefficient > 0 || sim.directional_drag > 0;
+    const bool drags = medium_drags(sim);
     const bool aside = sim.directional_drag > 0 && sim.directional_drag_along == DragAlong::normal;
     if (aside || (drags && bodies.size() > 1) || !fly_together(scene, bodies)) return {};
     double soonest = kNever;

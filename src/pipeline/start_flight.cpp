@@ -16,11 +16,8 @@ constexpr int kMostLooks = 200;  // each goes at least half of the way that is l
 double start_flight(const StageSpec& stage, const Machine& machine,
                     const std::vector<NamedMatter>& bodies, double step) {
     const SimSettings& sim = stage.sim;
-    const MachineSpec& spec = stage.machine;
-    const bool only_gravity = spec.grip.empty() && spec.blade.empty() && spec.load.empty() &&
-                              spec.gravity_strength.empty() && sim.medium_density == 0 &&
-                              sim.directional_drag == 0;
-    if (sim.solver != Solver::explicit_steps || !spec.stands() || !only_gravity) return 0;
+    const bool is_steady = stage.machine.stands() && stage.machine.gravity_strength.empty();
+    if (!is_steady || !only_gravity_acts(machine.apparatus, sim)) return 0;
     std::list<TouchPoints> touch;
     std::list<Vec3Array> position;
     std::vector<Flyer> flying;

@@ -62,6 +62,11 @@ double time_for(double way, double speed, double acceleration) {
 
 }  // namespace
 
+bool only_gravity_acts(const Apparatus& apparatus, const SimSettings& settings) {
+    return settings.solver == Solver::explicit_steps && apparatus.grip.empty() &&
+           apparatus.blade.empty() && apparatus.load.empty() && !medium_drags(settings);
+}
+
 double rounding_energy(const Aggregate& matter, double step) {
     const double moved = std::numeric_limits<double>::epsilon() / step;
     return chunked_sum(matter.particle_count(), [&](std::size_t p) {

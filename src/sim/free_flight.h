@@ -13,10 +13,20 @@
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "matter/touch_points.h"
+#include "sim/settings.h"
 
 namespace swage {
 
 inline constexpr double kWorthFlying = 512;  // steps that it takes otherwise; fewer are soon over
+
+// Whether a medium drags at what moves.
+inline bool medium_drags(const SimSettings& settings) {
+    return settings.medium_density * settings.drag_coefficient > 0 || settings.directional_drag > 0;
+}
+
+// Whether, while nothing is touched, gravity alone acts in explicit steps. Whether that changes is
+// for the drives to say.
+bool only_gravity_acts(const Apparatus& apparatus, const SimSettings& settings);
 
 // What rounding its places leaves of energy in matter that takes steps of this length [s]: twice as
 // much as it does to places, were the steps the longest that are stable [J].

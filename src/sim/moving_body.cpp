@@ -109,8 +109,7 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       remembers_(breaks_ || matter.yields()),
       implicit_(settings.solver == Solver::implicit_steps),
       saves_branches_(settings.solver == Solver::energy_stepped),
-      flies_(settings.solver == Solver::explicit_steps && apparatus.grip.empty() &&
-             apparatus.blade.empty() && apparatus.load.empty() && !drag_.acts()) {
+      flies_(only_gravity_acts(apparatus, settings)) {
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
         stiffens_ = stiffens_ || matter.material_at(n).elasticity == Elasticity::storakers;
     }

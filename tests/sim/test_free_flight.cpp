@@ -263,3 +263,20 @@ TEST_CASE("what is strained, spins or is braked takes its steps") {
         one.settings.solver = Solver::euler;
     }));
 }
+
+TEST_CASE("only gravity acts where nothing holds, cuts, pushes or drags, in explicit steps") {
+    SimSettings settings;
+    Apparatus apparatus;
+    CHECK(!only_gravity_acts(apparatus, settings));  // at rest
+    settings.solver = Solver::explicit_steps;
+    CHECK(only_gravity_acts(apparatus, settings));
+    settings.medium_density = 1.2;
+    CHECK(!only_gravity_acts(apparatus, settings));
+    settings.drag_coefficient = 0;
+    CHECK(only_gravity_acts(apparatus, settings));
+    settings.directional_drag = 1;
+    CHECK(!only_gravity_acts(apparatus, settings));
+    settings.directional_drag = 0;
+    apparatus.load.resize(1);
+    CHECK(!only_gravity_acts(apparatus, settings));
+}
