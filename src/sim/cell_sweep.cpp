@@ -200,8 +200,10 @@ void CellSweep::cells_changed(const Aggregate& matter, std::vector<TurnedCell>* 
         if (whole[cell] && !cracked) return;
         fill_[cell] = 0;
         if (turned && carried[cell] > 0) {
-            const bool one = matter.mixed_at(cell) == nullptr;
-            turned->push_back({&run, n, one ? energy_of(matter, run, n) : 0});
+            const MixedCell* two = matter.mixed_at(cell);
+            turned->push_back(
+                {&run, n,
+                 two ? swage::elastic_energy(matter, law_, *two) : energy_of(matter, run, n)});
         }
     });
     mixed_.cells_changed(matter, fill_);

@@ -27,7 +27,7 @@ class CellSweep {
     void watch_strain(double onset) { onset_ = onset; }
 
     // Cells that are not whole any more carry nothing from now on. Adds those that have carried
-    // until now to `turned`, where that is asked for, without the energy of those of two materials.
+    // until now to `turned`, where that is asked for.
     void cells_changed(const Aggregate& matter, std::vector<TurnedCell>* turned = nullptr);
     const std::vector<float>& carried_fill() const { return fill_; }  // 0: not whole
 

@@ -48,8 +48,6 @@ void LatticeForces::connections_changed(Aggregate& matter, bool severed) {
         flowed.assign(first, turned.end());
         turned.erase(first, turned.end());
     }
-    // What a cell of two materials held is not told.
-    std::erase_if(turned, [&](const TurnedCell& c) { return matter.mixed_at(c.id()) != nullptr; });
     if (in_excess) loose_.take_over(matter, turned);
     loose_.lay_to_rest(matter, flowed);
     others_changed(matter);

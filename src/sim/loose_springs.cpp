@@ -145,12 +145,15 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<TurnedCell>& t
         const Mat3 gradient = material_gradient(matter, *cell.run, cell.n);
         const Symmetric<double> metric =
             flowed_metric(committed_history(matter, cell.id()).stretch);
+        const bool mixed = matter.mixed_at(cell.id()) != nullptr;
         std::vector<double> mean(now.size());  // strain that the material's is along each
         for (std::size_t n = 0; n < now.size(); ++n) {
             const auto& way = kForward[spring_[n].direction];
             const Vec3 along(way[0], way[1], way[2]);
             const Triple<double> t = {along.x(), along.y(), along.z()};
-            mean[n] = (gradient * along).norm() / std::sqrt(dot(t, metric * t)) - 1;
+            // Two materials have one length along it, whatever each has flowed.
+            const double rest = mixed ? now[n].length / a : std::sqrt(dot(t, metric * t));
+            mean[n] = (gradient * along).norm() / rest - 1;
         }
         const auto strain = [&](std::size_t n, double bent, double all) {
             return all * (mean[n] + bent * (now[n].strain - mean[n]));

@@ -25,8 +25,9 @@ class LooseSprings {
     // Lays down in the matter what the springs of such cells are at rest with (cell_set), so that
     // they hold no more than the cells did. A cell that is partly filled resists being bent by its
     // filling cubed, and springs by the filling itself: their excess of that is taken away first,
-    // and what their stretch holds too much then. For matter that breaks: what a blade severs,
-    // its tools pay for. connections_changed() must follow.
+    // and what their stretch holds too much then, as it does across the boundary of two materials.
+    // For matter that breaks: what a blade severs, its tools pay for. connections_changed() must
+    // follow.
     void take_over(Aggregate& matter, const std::vector<TurnedCell>& turned);
     // The same so that they hold nothing, as they lie.
     void lay_to_rest(Aggregate& matter, const std::vector<TurnedCell>& turned);

@@ -105,7 +105,29 @@ Columns<double> gradient_of(const OneMixed& one, const MixedCell& cell, int p) {
     return jumped(one.found.phase[p].gradient, normal, share[p] * one.found.jump);
 }
 
+double energy_in(const Aggregate& matter, const MixedCell& cell, const OneMixed& one) {
+    const double volume = matter.lattice.cell_volume();
+    double sum = 0;
+    for (int p = 0; p < 2; ++p) {
+        const Phase<double>& m = one.phase[p];
+        const PhaseState<double>& s = one.found.phase[p];
+        const Columns<double> f = gradient_of(one, cell, p);
+        const Symmetric<double> a = taken_back(m.history);
+        const double mean = mean_energy(m.kind, *m.law, f, cell_strain(f * a));
+        const CellModes<double> q = s.modes - m.history.modes;
+        sum += volume * m.fill * mean +
+               0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, a, q), q);
+    }
+    return sum;
+}
+
 }  // namespace
+
+double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                      const MixedCell& cell) {
+    return energy_in(matter, cell,
+                     one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell)));
+}
 
 std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                                       const MixedCell& cell) {
@@ -222,24 +244,10 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
 
 double MixedCells::elastic_energy(const Aggregate& matter,
                                   const std::vector<MaterialLaw>& laws) const {
-    const double volume = matter.lattice.cell_volume();
-    const auto energy_of = [&](std::size_t n) {
+    return ordered_sum_of(batches_.cell.size(), kCellsPerChunk, [&](std::size_t n) {
         const MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
-        const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);
-        double sum = 0;
-        for (int p = 0; p < 2; ++p) {
-            const Phase<double>& m = one.phase[p];
-            const PhaseState<double>& s = one.found.phase[p];
-            const Columns<double> f = gradient_of(one, cell, p);
-            const Symmetric<double> a = taken_back(m.history);
-            const double mean = mean_energy(m.kind, *m.law, f, cell_strain(f * a));
-            const CellModes<double> q = s.modes - m.history.modes;
-            sum += volume * m.fill * mean +
-                   0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, a, q), q);
-        }
-        return sum;
-    };
-    return ordered_sum_of(batches_.cell.size(), kCellsPerChunk, energy_of);
+        return energy_in(matter, cell, one_mixed(matter, laws, cell, batches_.corner[n]));
+    });
 }
 
 }  // namespace swage

@@ -23,6 +23,10 @@ struct MixedBatches {
     std::vector<int> first;  // of each batch; the end
 };
 
+// What it holds [J].
+double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                      const MixedCell& cell);
+
 // The largest principal strain of each of its two materials, less what has flowed.
 std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                                       const MixedCell& cell);

@@ -9,7 +9,7 @@ namespace swage {
 struct TurnedCell {
     const CellRun* run;
     int n;          // of the run
-    double energy;  // [J]; 0 of two materials
+    double energy;  // [J]
 
     CellId id() const { return run->first + n; }
 };
