@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
 
 #include "base/ascii.h"
 #include "base/math.h"
@@ -14,17 +17,54 @@ namespace swage {
 
 namespace {
 
+// times / over, the point moved by `power`: what most units are of SI, and no double is.
+struct Ratio {
+    std::uint64_t times, over = 1;
+    int power = 0;
+
+    friend constexpr Ratio operator*(std::uint64_t n, Ratio a) { return a * Ratio{n}; }
+    friend constexpr Ratio operator*(Ratio a, Ratio b) {
+        const std::uint64_t left = std::gcd(a.times, b.over), right = std::gcd(b.times, a.over);
+        Ratio c{product(a.times / left, b.times / right), product(a.over / right, b.over / left),
+                a.power + b.power};
+        for (; c.times % 10 == 0; c.times /= 10) ++c.power;
+        return c;
+    }
+    friend constexpr Ratio operator/(Ratio a, Ratio b) {
+        return a * Ratio{b.over, b.times, -b.power};
+    }
+    friend constexpr Ratio operator/(Ratio a, std::uint64_t n) { return a / Ratio{n}; }
+
+    // So small that ten times it can be counted; else this is no constant, and does not compile.
+    static constexpr std::uint64_t product(std::uint64_t a, std::uint64_t b) {
+        return a <= 1'000'000'000'000'000'000 / b ? a * b : throw std::overflow_error("a unit");
+    }
+
+    constexpr double value() const {
+        double ten = 1;
+        for (int n = 0; n < (power < 0 ? -power : power); ++n) ten *= 10;
+        const double top = static_cast<double>(times), bottom = static_cast<double>(over);
+        return power < 0 ? top / (bottom * ten) : top * ten / bottom;
+    }
+};
+
 struct Unit {
     const char* name;
     Quantity quantity;
     double factor;       // to SI
     bool shown = false;  // used to show values; those of one quantity stand from large to small
+    Ratio exact = {0};   // the factor, where it is neither a power of ten nor one of angles
+
+    constexpr Unit(const char* n, Quantity q, double f, bool s = false)
+        : name(n), quantity(q), factor(f), shown(s) {}
+    constexpr Unit(const char* n, Quantity q, Ratio r)
+        : name(n), quantity(q), factor(r.value()), exact(r) {}
 };
 
-constexpr double kInch = 0.0254;
-constexpr double kPound = 0.45359237;                 // [kg]
-constexpr double kPoundForce = 9.80665 * kPound;      // [N]
-constexpr double kSlug = kPoundForce / (12 * kInch);  // [kg], of 1 ft/s2 by 1 lbf
+constexpr Ratio kInch{254, 1, -4};
+constexpr Ratio kPound{45359237, 1, -8};                      // [kg]
+constexpr Ratio kPoundForce = Ratio{980665, 1, -5} * kPound;  // [N]
+constexpr Ratio kSlug = kPoundForce / (12 * kInch);           // [kg], of 1 ft/s2 by 1 lbf
 constexpr double kDegree = kPi / 180;
 
 constexpr Unit kUnits[] = {
@@ -43,7 +83,7 @@ constexpr Unit kUnits[] = {
     {"ft", Quantity::length, 12 * kInch},
     {"feet", Quantity::length, 12 * kInch},
     {"yd", Quantity::length, 36 * kInch},
-    {"mil", Quantity::length, 1e-3 * kInch},
+    {"mil", Quantity::length, kInch / 1000},
     {"deg", Quantity::angle, kDegree, true},
     {"rad", Quantity::angle, 1},
     {"mrad", Quantity::angle, 1e-3},
@@ -55,13 +95,13 @@ constexpr Unit kUnits[] = {
     {"ms", Quantity::time, 1e-3, true},
     {"us", Quantity::time, 1e-6, true},
     {"sec", Quantity::time, 1},
-    {"min", Quantity::time, 60},
-    {"h", Quantity::time, 3600},
+    {"min", Quantity::time, Ratio{60}},
+    {"h", Quantity::time, Ratio{3600}},
     {"m/s", Quantity::speed, 1, true},
     {"mm/s", Quantity::speed, 1e-3, true},
     {"um/s", Quantity::speed, 1e-6, true},
     {"cm/s", Quantity::speed, 1e-2},
-    {"km/h", Quantity::speed, 1 / 3.6},
+    {"km/h", Quantity::speed, Ratio{10, 36}},
     {"in/s", Quantity::speed, kInch},
     {"ft/s", Quantity::speed, 12 * kInch},
     {"mph", Quantity::speed, 63360 * kInch / 3600},
@@ -73,11 +113,11 @@ constexpr Unit kUnits[] = {
     {"N/mm2", Quantity::stress, 1e6},
     {"bar", Quantity::stress, 1e5},
     {"psi", Quantity::stress, kPoundForce / (kInch * kInch)},
-    {"ksi", Quantity::stress, 1e3 * kPoundForce / (kInch * kInch)},
+    {"ksi", Quantity::stress, 1000 * kPoundForce / (kInch * kInch)},
     {"lbf/in2", Quantity::stress, kPoundForce / (kInch * kInch)},
     {"lbf/ft2", Quantity::stress, kPoundForce / (144 * kInch * kInch)},
-    {"kip/in2", Quantity::stress, 1e3 * kPoundForce / (kInch * kInch)},
-    {"kip/ft2", Quantity::stress, 1e3 * kPoundForce / (144 * kInch * kInch)},
+    {"kip/in2", Quantity::stress, 1000 * kPoundForce / (kInch * kInch)},
+    {"kip/ft2", Quantity::stress, 1000 * kPoundForce / (144 * kInch * kInch)},
     {"psf", Quantity::stress, kPoundForce / (144 * kInch * kInch)},
     {"kg/m3", Quantity::density, 1, true},
     {"g/cm3", Quantity::density, 1e3},
@@ -102,10 +142,10 @@ constexpr Unit kUnits[] = {
     {"kN", Quantity::force, 1e3, true},
     {"N", Quantity::force, 1, true},
     {"mN", Quantity::force, 1e-3, true},
-    {"kgf", Quantity::force, 9.80665},
+    {"kgf", Quantity::force, Ratio{980665, 1, -5}},
     {"lbf", Quantity::force, kPoundForce},
     {"ozf", Quantity::force, kPoundForce / 16},
-    {"kip", Quantity::force, 1e3 * kPoundForce},
+    {"kip", Quantity::force, 1000 * kPoundForce},
     {"kN m", Quantity::torque, 1e3, true},
     {"N m", Quantity::torque, 1, true},
     {"N mm", Quantity::torque, 1e-3, true},
@@ -122,8 +162,8 @@ constexpr Unit kUnits[] = {
     {"lb ft", Quantity::torque, 12 * kInch * kPoundForce},
     {"oz in", Quantity::torque, kInch * kPoundForce / 16},
     {"ozf in", Quantity::torque, kInch * kPoundForce / 16},
-    {"kip in", Quantity::torque, 1e3 * kInch * kPoundForce},
-    {"kip ft", Quantity::torque, 12e3 * kInch * kPoundForce},
+    {"kip in", Quantity::torque, 1000 * kInch * kPoundForce},
+    {"kip ft", Quantity::torque, 12000 * kInch * kPoundForce},
     {"m/s2", Quantity::acceleration, 1, true},
     {"mm/s2", Quantity::acceleration, 1e-3},
     {"in/s2", Quantity::acceleration, kInch},
@@ -219,6 +259,29 @@ std::string wanted_text(Quantity wanted) {
         names.push_back("...");
     }
     return fmt::format("expected {} ({})", about(wanted).with_article, joined(names, ", "));
+}
+
+// The decimal number `digits` * times / over, its point moved by `power`.
+std::string scaled(std::string digits, const Ratio& by, int power) {
+    std::uint64_t carry = 0;
+    for (std::size_t n = digits.size(); n-- > 0; carry /= 10) {
+        carry += static_cast<std::uint64_t>(digits[n] - '0') * by.times;
+        digits[n] = static_cast<char>('0' + carry % 10);
+    }
+    if (carry > 0) digits.insert(0, fmt::format("{}", carry));
+    if (by.over > 1) {
+        constexpr int kMore = 60;  // more than make out to which double it is next
+        digits.append(kMore, '0');
+        power -= kMore;
+        std::uint64_t rest = 0;
+        for (char& digit : digits) {
+            rest = 10 * rest + static_cast<std::uint64_t>(digit - '0');
+            digit = static_cast<char>('0' + rest / by.over);
+            rest %= by.over;
+        }
+        if (rest > 0) digits.back() = std::max(digits.back(), '1');  // nor a tie, if it goes on
+    }
+    return fmt::format("{}e{}", digits, power);
 }
 
 [[noreturn]] void refuse(std::size_t at, const std::string& sentence) {
@@ -322,17 +385,35 @@ double in_si(std::string_view number, const LeadingUnit& unit) {
     constexpr double kTenTo[] = {1e-9, 1e-6, 1e-3, 1e-2, 1e-1, 1e3, 1e5, 1e6, 1e9};
     constexpr int kPower[] = {-9, -6, -3, -2, -1, 3, 5, 6, 9};
     const double value = leading_number(number)->value;
-    const auto* const ten = std::find(std::begin(kTenTo), std::end(kTenTo), unit.factor);
     const double product = value * unit.factor;
-    if (ten == std::end(kTenTo) || value == 0 || !std::isfinite(product)) return product;
-    // By the point, not by a product, which is rounded once more.
+    if (value == 0 || !std::isfinite(product)) return product;
+    Ratio exact{1};
+    const auto* const ten = std::find(std::begin(kTenTo), std::end(kTenTo), unit.factor);
+    if (ten != std::end(kTenTo)) {
+        exact.power = kPower[ten - std::begin(kTenTo)];
+    } else {
+        const Unit* const own = std::find_if(
+            std::begin(kUnits), std::end(kUnits), [&](const Unit& one) {
+                return one.quantity == unit.quantity && one.factor == unit.factor;
+            });
+        if (own == std::end(kUnits) || own->exact.times == 0) return product;
+        exact = own->exact;
+    }
+    // By the digits, not by a product, which is rounded once more.
     const std::size_t e = std::min(number.find_first_of("eE"), number.size());
     std::string_view exponent = number.substr(std::min(e + 1, number.size()));
     if (exponent.starts_with('+')) exponent.remove_prefix(1);
     int power = 0;
     std::from_chars(exponent.data(), exponent.data() + exponent.size(), power);
-    power += kPower[ten - std::begin(kTenTo)];
-    return leading_number(fmt::format("{}e{}", number.substr(0, e), power))->value;
+    std::string digits;
+    for (const char c : number.substr(0, e)) {
+        if (is_digit(c)) digits += c;
+    }
+    const std::size_t point = number.substr(0, e).find('.');
+    if (point != std::string_view::npos) power -= static_cast<int>(e - point - 1);
+    power += exact.power;
+    return leading_number(
+               fmt::format("{}{}", value < 0 ? "-" : "", scaled(digits, exact, power)))->value;
 }
 
 double parse_quantity(std::string_view text, Quantity wanted) {

@@ -252,3 +252,41 @@ TEST_CASE("one quantity is one number, in whatever decimal unit it is written") 
     CHECK(mistake_of("1e308 km", Quantity::length) == "0: \"1e308 km\" is too large");
     CHECK(parse_quantity("1e-320 mm", Quantity::length) < 1e-320);
 }
+
+TEST_CASE(
+    "an inch, a foot, a pound and a minute are the decimal numbers that they are defined as") {
+    const auto same = [](const std::string& left, const std::string& right, Quantity quantity) {
+        CAPTURE(left, right);
+        CHECK(parse_quantity(left, quantity) == parse_quantity(right, quantity));
+    };
+    for (long n = 1; n < 3000; n += 7) {
+        const auto tenths = [n](long times) {  // n / 10 of so many
+            return fmt::format("{}.{}", n * times / 10, n * times % 10);
+        };
+        same(tenths(1) + " in", tenths(254) + "e-1 mm", Quantity::length);
+        same(tenths(1) + " ft", tenths(3048) + "e-4 m", Quantity::length);
+        same("-" + tenths(1) + " ft", "-" + tenths(12) + " in", Quantity::length);
+        same(tenths(1) + " yd", tenths(3) + " ft", Quantity::length);
+        same(fmt::format("{} mil", n), fmt::format("{}e-3 in", n), Quantity::length);
+        same(tenths(1) + " mph", tenths(44704) + "e-5 m/s", Quantity::speed);
+        same(tenths(18) + " km/h", tenths(5) + " m/s", Quantity::speed);
+        same(tenths(1) + " ft/s2", tenths(3048) + "e-4 m/s2", Quantity::acceleration);
+        same(tenths(1) + " min", tenths(60) + " s", Quantity::time);
+        same(tenths(1) + " lb", fmt::format("{}e-9 kg", 45359237 * n), Quantity::mass);
+        same(tenths(1) + " lb", tenths(16) + " oz", Quantity::mass);
+        same(tenths(1) + " kgf", fmt::format("{}e-6 N", 980665 * n), Quantity::force);
+        same(tenths(1) + " kip", fmt::format("{}00 lbf", n), Quantity::force);
+        same(tenths(1) + " lbf ft", tenths(192) + " ozf in", Quantity::torque);
+        same(tenths(1) + " ksi", fmt::format("{}e2 psi", n), Quantity::stress);
+        same(tenths(1) + " psi", tenths(144) + " psf", Quantity::stress);
+        same(tenths(1728) + " lb/ft3", fmt::format("{}e-1 lb/in3", n), Quantity::density);
+        same(tenths(1) + " lbf/in", tenths(12) + " ft lb/ft2", Quantity::toughness);
+    }
+    CHECK(parse_quantity("3 in", Quantity::length) == 0.0762);
+    CHECK(parse_quantity("1 ft", Quantity::length) == 0.3048);
+    CHECK(parse_quantity("0 ft", Quantity::length) == 0);
+    CHECK(mistake_of("1e308 mph", Quantity::speed) == "none");
+    CHECK(mistake_of("1e308 yd", Quantity::length) == "none");
+    CHECK(mistake_of("1e308 min", Quantity::time) == "0: \"1e308 min\" is too large");
+    CHECK(parse_quantity("1e-320 ft", Quantity::length) < 1e-320);
+}
