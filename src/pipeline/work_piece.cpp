@@ -121,7 +121,7 @@ void name_looks(TriMesh& skin, const std::string& label) {
 double in_whole_layers(double spacing, double thickness) {
     constexpr double kFewest = 3;  // of less the spacing would change by more than a sixth
     const double layers = std::round(thickness / spacing);
-    return layers < kFewest ? spacing : thickness / layers;
+    return layers < kFewest ? std::min(spacing, thickness) : thickness / layers;
 }
 
 void lay_boundary(WorkPiece& piece) {

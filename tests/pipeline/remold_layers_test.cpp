@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How stiff a bar of two materials is once it was molded anew.
+// Layers of what is molded anew: how stiff a bar of two materials then is, and bars that have
+// become thinner than a cell.
 #include <Eigen/Geometry>
 
+#include "geometry/box.h"
 #include "pipeline/work_piece.h"
 #include "sim/advance.h"
 #include "tests/catch.h"
@@ -87,6 +89,29 @@ TEST_CASE("a layered bar that is molded anew unloaded is as stiff as it was, alo
                                      turn_by(start.turn).toRotationMatrix() * x);
 
             CHECK(skew == Approx(expected).epsilon(0.05));
+        }
+    }
+}
+
+TEST_CASE("a bar of one or two cells is molded anew also once it is thinner than a cell was") {
+    InputMesh input;
+    input.mesh = box_mesh(-0.5 * kSize, 0.5 * kSize);
+    for (const int across : {1, 2}) {
+        for (const double high : {0.95, 0.6, 0.4}) {
+            CAPTURE(across, high);
+            BodySpec body;
+            body.mold.across = across;
+            WorkPiece piece = make_work_piece(input, body, {});
+            const double mass = piece.matter.mass(), before = piece.matter.lattice.spacing;
+            Vec3Array& x = piece.matter.particle_position;
+            for (std::size_t p = 0; p < x.size(); ++p) {
+                x.set(p, x.at(p).cwiseProduct(Vec3(1, high, 1)));
+            }
+            follow_matter(piece);
+            const WorkPiece anew = mold_anew(piece, body, {});
+            const double thin = box_of(piece.position).size().minCoeff();
+            CHECK(anew.matter.lattice.spacing == Approx(std::min(before, thin)));
+            CHECK(anew.matter.mass() == Approx(mass).epsilon(1e-6));
         }
     }
 }
