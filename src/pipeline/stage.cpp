@@ -17,6 +17,7 @@
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/run_record.h"
+#include "pipeline/settled_cut.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/stage_meshes.h"
 #include "pipeline/stage_verdict.h"
@@ -38,23 +39,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kOpenSkin = "the skin could not be closed everywhere that matter broke";
-
-// The skin is cut along the whole path of the stage's blades when they reach the matter.
-void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& piece, int frame,
-               WarningBook& warnings) {
-    const CutResult cut = cut_skins(piece, swept_triangles(machine.apparatus, way));
-    follow_matter(piece);
-    if (cut.open_parts > 0) {
-        warnings.add(frame,
-                     fmt::format("{} open part{} of the skin could not be closed where it is cut",
-                                 cut.open_parts, cut.open_parts == 1 ? "" : "s"));
-    }
-    if (cut.has_curved) {
-        warnings.add(frame,
-                     "a blade's path bends or turns within the work-piece, so the skin is torn "
-                     "along it and left open (skin.kind = \"boundary\" is made anew and closed)");
-    }
-}
 
 // What is being handled, where it ends a stage that is told of as far as it came: a failure of this
 // kind, or want of memory or threads. Anything else is thrown on.
@@ -250,7 +234,7 @@ class StageRun {
                 }();
                 if (report.severed > 0) hold_skins();
                 if (report.stop) {
-                    stop(*report.stop, simulation);
+                    stop(*report.stop, simulation, number);
                 } else {
                     way_.go_on();
                 }
@@ -281,11 +265,14 @@ class StageRun {
     }
 
     // The machine has reached a limit, and goes on without coming any farther.
-    void stop(const LimitStop& at, Simulation& simulation) {
+    void stop(const LimitStop& at, Simulation& simulation, int number) {
         way_.stop(at.at);
         // Blades go on as they would have gone, in other legs.
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            if (cuts_[b]) simulation.plan_cuts(b, way_.ahead(), way_.steps());
+            if (cuts_[b] == kGrazed) settle(simulation, b, number);
+            if (cuts_[b] != kCut) continue;
+            simulation.plan_cuts(b, way_.ahead(), way_.steps());
+            keep_what_is_not_shown(b, simulation, bodies_[b]);
         }
     }
 
@@ -298,10 +285,15 @@ class StageRun {
                 look_for_blades(b);
                 continue;
             }
-            cuts_[b] = 1;
-            simulation.plan_cuts(b, way_.ahead(), way_.steps());
-            cut_ahead(machine_, way_.ahead(), bodies_[b], number, warnings_);
+            settle(simulation, b, number);
         }
+    }
+
+    void settle(Simulation& simulation, std::size_t b, int number) {
+        const bool is_cut = settle_cut(machine_, way_.ahead(), way_.steps(), b, simulation,
+                                       bodies_[b], number, warnings_);
+        cuts_[b] = is_cut ? kCut : kGrazed;
+        if (!is_cut) totals_.entered = bodies_[b].matter.lattice.spacing;
     }
 
     // Where nothing is severed: whether there is matter that blades go into on this leg.
@@ -322,7 +314,7 @@ class StageRun {
     void hold_skins() {
         const auto lap = context_.watch.lap("skin");
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            if (cuts_[b]) hold_skin(bodies_[b]);
+            if (cuts_[b] == kCut) hold_skin(bodies_[b]);
         }
     }
 
@@ -392,7 +384,9 @@ class StageRun {
     StageWay way_;
     LimitWatch limits_;
     UseWatch use_;
-    std::vector<char> cuts_;  // a body each: whether its cut is settled
+    // Of a body: whether its cut is settled, and by that none.
+    static constexpr char kCut = 1, kGrazed = 2;
+    std::vector<char> cuts_;
     const StageMeshes meshes_;
     int before_ = 0;  // the last frame before the stage
     std::optional<StageCurves> curves_;

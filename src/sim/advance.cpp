@@ -256,6 +256,19 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
     keep_crumbs(ahead, at.plan);
 }
 
+Aggregate Simulation::planned(std::size_t body) const {
+    Aggregate ahead = *rooms_->body[body].matter;
+    for (const std::vector<SeverEvent>& events : rooms_->body[body].plan) sever(ahead, events);
+    return ahead;
+}
+
+bool Simulation::keep(std::size_t body, const Aggregate& planned, const std::vector<char>& piece) {
+    std::deque<std::vector<SeverEvent>>& plan = rooms_->body[body].plan;
+    keep_pieces(find_pieces(planned), piece, plan);
+    return std::any_of(plan.begin(), plan.end(),
+                       [](const auto& events) { return !events.empty(); });
+}
+
 std::vector<ToolLoad> Simulation::loads(const Drive& now) const {
     return rooms_->loads(now, rooms_->load_sums(now));
 }

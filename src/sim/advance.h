@@ -78,6 +78,10 @@ class Simulation {
     // that a skin that was cut along the same path opens cleanly. Frames beyond the plan sever what
     // they meet.
     void plan_cuts(std::size_t body, std::span<const Drive> way, int steps);
+    // The body once all of its plan is severed; then of the pieces of that the marked ones, which
+    // stay with one that they would be cut from: false where this leaves nothing to sever.
+    Aggregate planned(std::size_t body) const;
+    bool keep(std::size_t body, const Aggregate& planned, const std::vector<char>& piece);
 
     // Everything that may act on the bodies, in the order of FrameReport::load, without what it
     // does.

@@ -30,9 +30,13 @@ std::ptrdiff_t particles_in_crumbs(const Pieces& pieces) {
 
 void keep_crumbs(const Aggregate& cut, std::deque<std::vector<SeverEvent>>& plan) {
     const Pieces pieces = find_pieces(cut);
-    const std::vector<char> crumb = crumbs_of(pieces);
+    keep_pieces(pieces, crumbs_of(pieces), plan);
+}
+
+void keep_pieces(const Pieces& pieces, const std::vector<char>& crumb,
+                 std::deque<std::vector<SeverEvent>>& plan) {
     const std::vector<int>& of = pieces.particle_piece;
-    std::map<std::pair<int, int>, double> held;  // of a crumb by a piece: weights
+    std::map<std::pair<int, int>, double> held;  // of one by another: weights
     for (const std::vector<SeverEvent>& events : plan) {
         for (const SeverEvent& e : events) {
             const int a = of[e.lower], b = of[e.upper];

@@ -39,4 +39,14 @@ std::vector<int> skin_pieces(const TriMesh& skin, const Mount& mount, const Aggr
     return of_triangle;
 }
 
+std::vector<char> pieces_without_skin(const TriMesh& skin, const Mount& mount,
+                                      const Aggregate& matter) {
+    const PieceMap map(matter);
+    std::vector<char> bare(static_cast<std::size_t>(map.pieces().count), 1);
+    for (const Corners& corners : skin.triangle) {
+        for (const int v : corners) bare[map.piece_of(mount.place(v))] = 0;
+    }
+    return bare;
+}
+
 }  // namespace swage

@@ -14,4 +14,8 @@ namespace swage {
 // a cell, are one, and those without a triangle are left out.
 std::vector<int> skin_pieces(const TriMesh& skin, const Mount& mount, const Aggregate& matter);
 
+// Of each of its pieces, as find_pieces() has them, whether it has none of the skin.
+std::vector<char> pieces_without_skin(const TriMesh& skin, const Mount& mount,
+                                      const Aggregate& matter);
+
 }  // namespace swage

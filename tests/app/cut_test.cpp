@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/srgb.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
@@ -299,4 +301,46 @@ TEST_CASE("slices of parts that cells join keep their shape, and each slice is a
         CHECK(volume == Approx(one.size.prod()).epsilon(1e-4));
     }
     CHECK(mesh.part_name.size() == 3);
+}
+
+TEST_CASE("a blade that grazes takes no layer of matter that the skin would not show") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "graze.toml";
+    put_text(scratch.path() / "graze_machine.toml",
+             "[parameter.place]\nquantity = \"length\"\ndefault = \"0 m\"\nlow = \"-1 m\"\nhigh = "
+             "\"1 m\"\nhelp = \"of the cut\"\n[[blade]]\nname = \"knife\"\n"
+             "edge = [[\"place\", \"0.06\", \"-0.5\"], [\"place\", \"0.06\", \"0.5\"]]\n"
+             "[blade.motion]\nmove = [\"0\", \"-0.12*t\", 0]\n");
+    run_swage({"make", "bar", "--length", "20 cm", "--height", "4 cm", "--width", "6 cm",
+               "--rounding", "0 m", "--out", "bar.obj"},
+              scratch.path());
+    for (const std::string kind : {"mount", "boundary"}) {
+        for (const std::string at : {"0.099999", "0.0999", "-0.099999", "0.09"}) {
+            CAPTURE(kind, at);
+            const fs::path out = scratch.path() / (kind + at);
+            put_text(scene,
+                     "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = "
+                     "3\n[skin]\nkind = \"" +
+                         kind +
+                         "\"\n[[stage]]\nmachine = \"graze_machine.toml\"\nframes = 2\nplace = \"" +
+                         at + " m\"\n");
+            const Outcome outcome =
+                run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
+            INFO(outcome.err);
+            REQUIRE(outcome.code == 0);
+            const Json stage = parse_json(bytes_of(out / "run.json")).at("stages").back();
+            const bool parts = at == "0.09";
+            CHECK(stage["pieces"] == (parts ? 2 : 1));
+            CHECK(stage["skin_pieces"].size() == (parts ? 1 : 0));
+            CHECK((stage["severed"] == 0) == !parts);
+            const bool is_told =
+                outcome.err.find("severed nothing: what is narrower than a cell") !=
+                std::string::npos;
+            CHECK(is_told == !parts);
+            const swage::TriMesh mesh = swage::read_mesh(out / "meshes/1-graze_machine.obj");
+            const bool shows_cut = std::ranges::any_of(
+                mesh.material, [](const auto& one) { return one.name == swage::kCutMaterial; });
+            CHECK(shows_cut == parts);
+        }
+    }
 }
