@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "pipeline/blade_entry.h"
 #include "pipeline/body_table.h"
+#include "pipeline/boundary_note.h"
 #include "pipeline/curves.h"
 #include "pipeline/limit_watch.h"
 #include "pipeline/machine_place.h"
@@ -110,6 +111,7 @@ class StageRun {
         std::vector<std::string> told = tool_overlaps(machine_, named(bodies_), to_move_as_molded);
         const std::string note = stiffness_note(stage_, named(bodies_));
         if (!note.empty()) told.push_back(note);
+        for (std::string& one : boundary_notes(bodies_)) told.push_back(std::move(one));
         for (const std::string& one : told) warn(fmt::format("{}: {}", stage_.name, one));
     }
 
