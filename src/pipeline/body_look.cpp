@@ -12,40 +12,14 @@ namespace swage {
 namespace {
 
 constexpr double kMetalRoughness = 0.35;
+constexpr double kAlike = 0.05;  // linear RGB, that colours are not told apart by
+// What is like another goes this share of the way to black, or from below this to white.
+constexpr double kStep = 0.6, kDark = 0.3;
+constexpr int kMostSteps = 4;
 
 bool says_none(const TriMesh& mesh) { return mesh.material.empty() && mesh.position_color.empty(); }
 
 bool is_metal(const SurfaceMaterial& look) { return look.metallic > 0.5; }
-
-}  // namespace
-
-std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& mesh) {
-    if (body.color) {
-        SurfaceMaterial look;
-        look.color = *body.color;
-        if (body.metal.value_or(false)) {
-            look.metallic = 1;
-            look.roughness = kMetalRoughness;
-        } else if (!body.metal && body.look && !is_metal(*body.look)) {
-            look.roughness = body.look->roughness;
-            look.clear = body.look->clear;
-        }
-        return look;
-    }
-    return body.wears_material || says_none(mesh) ? body.look : std::nullopt;
-}
-
-void color_inside(const BodySpec& body, TriMesh& mesh) {
-    if (!body.cut_color) return;
-    if (mesh.material.empty()) mesh.material.emplace_back();
-    for (SurfaceMaterial& material : mesh.material) material.inside = body.cut_color;
-}
-
-namespace {
-
-constexpr double kAlike = 0.05;  // linear RGB, that colours are not told apart by
-constexpr double kDark = 0.3, kStep = 0.6;
-constexpr int kMostSteps = 4;
 
 std::string name_of(const Material& material, std::size_t number) {
     return cut_name(material.name == Material().name ? std::to_string(number) : material.name);
@@ -83,6 +57,28 @@ SurfaceMaterial inset_look(const InsetSpec& inset, const SurfaceMaterial& cut,
 }
 
 }  // namespace
+
+std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& mesh) {
+    if (body.color) {
+        SurfaceMaterial look;
+        look.color = *body.color;
+        if (body.metal.value_or(false)) {
+            look.metallic = 1;
+            look.roughness = kMetalRoughness;
+        } else if (!body.metal && body.look && !is_metal(*body.look)) {
+            look.roughness = body.look->roughness;
+            look.clear = body.look->clear;
+        }
+        return look;
+    }
+    return body.wears_material || says_none(mesh) ? body.look : std::nullopt;
+}
+
+void color_inside(const BodySpec& body, TriMesh& mesh) {
+    if (!body.cut_color) return;
+    if (mesh.material.empty()) mesh.material.emplace_back();
+    for (SurfaceMaterial& material : mesh.material) material.inside = body.cut_color;
+}
 
 std::vector<SurfaceMaterial> inset_looks(const BodySpec& body, const TriMesh& dressed) {
     const SurfaceMaterial cut = cut_look(dressed);

@@ -21,8 +21,7 @@ std::vector<std::string> boundary_notes(const std::vector<WorkPiece>& bodies) {
             "the boundary of {} encloses {:.2g} % {} than its matter: it joins what lies nearer "
             "than a cell, {}, and cannot follow what is thinner; smaller cells make it less, "
             "skin.kind = \"mount\" avoids it",
-            bodies.size() == 1 ? "the work-piece" : body.name, 100 * std::abs(by),
-            by > 0 ? "more" : "less",
+            name_among(bodies, body), 100 * std::abs(by), by > 0 ? "more" : "less",
             quantity_text(body.matter.lattice.spacing, Quantity::length)));
     }
     return told;

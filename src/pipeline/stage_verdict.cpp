@@ -182,16 +182,12 @@ bool may_lie_in_itself(const StageEnd& end) {
     return !in_motion(end.stage.sim.solver) || !end.stage.sim.self_contact;
 }
 
-std::string name_in(const StageEnd& end, const WorkPiece& body) {
-    return end.bodies.size() == 1 ? "the work-piece" : body.name;
-}
-
 // How deep a body lies in itself, and what is to be said of that, if anything.
 std::pair<double, std::string> lies_in_itself(const StageEnd& end, WorkPiece& body) {
     const SimSettings& sim = end.stage.sim;
     const double overlap = own_overlap(body.matter);
     if (overlap <= kOverlap * body.matter.lattice.spacing) return {overlap, {}};
-    const std::string name = name_in(end, body);
+    const std::string name = name_among(end.bodies, body);
     const bool folded = sim.self_contact || find_pieces(body.matter).count == 1;
     return {
         overlap,
@@ -210,7 +206,7 @@ std::string swollen(const StageEnd& end, const WorkPiece& body) {
     const bool frame4 = body.mount.kind == SkinKind::frame4;
     return fmt::format(
         "the skin of {} encloses {:.2g} % {} than its matter, which flows at one volume: {}",
-        name_in(end, body), 100 * std::abs(by), by > 0 ? "more" : "less",
+        name_among(end.bodies, body), 100 * std::abs(by), by > 0 ? "more" : "less",
         frame4 ? "skin.kind = \"mount\" keeps it"
                : "it has folded within single cells, and smaller ones make it less");
 }
@@ -224,7 +220,7 @@ std::string shrunk(const StageEnd& end, std::size_t body) {
     return fmt::format(
         "the matter of {} has {} {:.2g} % of its volume by flow, which should keep "
         "it: {}",
-        name_in(end, piece), by < 0 ? "lost" : "gained", 100 * std::abs(by),
+        name_among(end.bodies, piece), by < 0 ? "lost" : "gained", 100 * std::abs(by),
         springs ? "springs that flow far fold within single cells; mechanics = "
                   "\"cells\" keeps it"
                 : "try more frames or smaller cells");
@@ -239,7 +235,7 @@ std::string stretched(const StageEnd& end, std::size_t b) {
     return fmt::format(
         "the skin of {} encloses {:.2g} % {} than before the cut: parts of it are stretched from "
         "one piece to another; smaller cells or skin.kind = \"boundary\" avoid that",
-        name_in(end, end.bodies[b]), 100 * std::abs(by), by > 0 ? "more" : "less");
+        name_among(end.bodies, end.bodies[b]), 100 * std::abs(by), by > 0 ? "more" : "less");
 }
 
 std::string how_to_close(Solver solver, const Books& last) {

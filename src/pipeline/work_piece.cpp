@@ -316,6 +316,10 @@ void dress(const InputMesh& input, const BodySpec& body, const SkinSettings& ski
 
 }  // namespace
 
+std::string name_among(const std::vector<WorkPiece>& bodies, const WorkPiece& body) {
+    return bodies.size() == 1 ? "the work-piece" : body.name;
+}
+
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin,
                           bool carries) {
     WorkPiece piece;

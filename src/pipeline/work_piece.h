@@ -77,6 +77,9 @@ struct WorkPiece {
     TriMesh deformed() const;
 };
 
+// What warnings call it.
+std::string name_among(const std::vector<WorkPiece>& bodies, const WorkPiece& body);
+
 // At its start: molded as its mesh stands in its file, then turned, moved and set in motion, so
 // that how it stands has no effect on how well it is resolved. `carries`: its insets' surfaces.
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin,
