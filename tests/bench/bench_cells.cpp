@@ -20,6 +20,7 @@
 #include "mold/mold.h"
 #include "sim/lattice_forces.h"
 #include "sim/vector_clones.h"
+#include "tests/bench/bent_bar.h"
 
 using namespace swage;
 
@@ -133,11 +134,8 @@ void kernels(double cells) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::vector<double> sizes;
-    for (int n = 1; n < argc; ++n) sizes.push_back(std::atof(argv[n]));
-    if (sizes.empty()) sizes = {1e4, 1e5, 1e6};
     set_thread_count(1);
     fmt::print("ns a cell, guard included{:>22}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "elastic",
                "rubber", "foam", "flowing", "curve", "back", "reversed");
-    for (double cells : sizes) kernels(cells);
+    for (double cells : test::given_sizes(argc, argv)) kernels(cells);
 }

@@ -15,7 +15,7 @@
 #include "sim/block_steps.h"
 #include "sim/lattice_forces.h"
 #include "sim/vector_clones.h"
-#include "tests/shared/block.h"
+#include "tests/bench/bent_bar.h"
 
 using namespace swage;
 
@@ -37,17 +37,8 @@ Material flowing(Material m) {
     return m;
 }
 
-// About this many particles, 2.4 : 1 : 1, slightly and smoothly out of shape.
 Aggregate bar(double particles, const Material& material) {
-    const int across = static_cast<int>(std::round(std::cbrt(particles / 2.4))) - 1;
-    Aggregate m = test::make_block(static_cast<int>(2.4 * across), across, across, 0.01, material);
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        const Vec3 x = m.particle_reference.at(p) / 0.01;
-        const Vec3 u(std::sin(0.7 * x.y() + 0.3 * x.z()), std::cos(0.5 * x.x()),
-                     std::sin(0.4 * x.y()));
-        m.particle_position.add(p, 2e-5 * u);
-    }
-    return m;
+    return test::bent_bar(static_cast<int>(std::round(std::cbrt(particles / 2.4))) - 1, material);
 }
 
 // Of this thread's own processor time, so that other work on the machine counts less: the least of
@@ -99,13 +90,10 @@ double step_ns(double particles, const Material& material) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::vector<double> sizes;
-    for (int n = 1; n < argc; ++n) sizes.push_back(std::atof(argv[n]));
-    if (sizes.empty()) sizes = {1e4, 1e5, 1e6};
     set_thread_count(1);
     fmt::print("ns a connection{:>21}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "forces", "step", "damped",
                "breaking", "both", "flowing");
-    for (double particles : sizes) {
+    for (double particles : test::given_sizes(argc, argv)) {
         for (int width : {8, 4}) {
             limit_vector_width(width);
             if (vector_width() != width) continue;

@@ -17,23 +17,11 @@
 
 #include "base/parallel.h"
 #include "sim/block_steps.h"
-#include "tests/shared/block.h"
+#include "tests/bench/bent_bar.h"
 
 using namespace swage;
 
 namespace {
-
-Aggregate bar(double cells, const Material& material) {
-    const int across = static_cast<int>(std::round(std::cbrt(cells / 2.4)));
-    Aggregate m = test::make_block(static_cast<int>(2.4 * across), across, across, 0.01, material);
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        const Vec3 x = m.particle_reference.at(p) / 0.01;
-        const Vec3 u(std::sin(0.7 * x.y() + 0.3 * x.z()), std::cos(0.5 * x.x()),
-                     std::sin(0.4 * x.y()));
-        m.particle_position.add(p, 2e-5 * u);
-    }
-    return m;
-}
 
 // 1, 2, 4 and so on, the number of cores last; two at least.
 std::vector<int> thread_counts() {
@@ -50,7 +38,7 @@ double median(std::vector<double> values) {
 }
 
 void compare(const char* name, double cells, const Material& material) {
-    Aggregate m = bar(cells, material);
+    Aggregate m = test::bent_bar(static_cast<int>(std::round(std::cbrt(cells / 2.4))), material);
     m.particle_position.x[0] +=
         1e-3 * m.lattice.spacing;  // without strain it would fly in one step
     const Apparatus nothing;
@@ -91,12 +79,7 @@ void compare(const char* name, double cells, const Material& material) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::vector<double> sizes;
-    bool busy = false;
-    for (int n = 1; n < argc; ++n) {
-        std::string(argv[n]) == "busy" ? busy = true : (sizes.push_back(std::atof(argv[n])), true);
-    }
-    if (sizes.empty()) sizes = {1e4, 1e5, 1e6};
+    const bool busy = argc > 1 && std::string(argv[1]) == "busy";
     std::atomic<bool> stop{false};
     std::thread spinner;
     if (busy) {
@@ -115,7 +98,7 @@ int main(int argc, char** argv) {
     springs.mechanics = Mechanics::springs;
     damped = springs;
     damped.damping_ratio = 0.02;
-    for (double cells : sizes) {
+    for (double cells : test::given_sizes(argc, argv, busy ? 2 : 1)) {
         compare("elastic", cells, elastic);
         compare("flowing", cells, flowing);
         compare("springs", cells, springs);

@@ -7,6 +7,7 @@
 
 #include "base/math.h"
 #include "laws/cell.h"
+#include "tests/catch.h"
 
 namespace swage::test {
 
@@ -36,6 +37,26 @@ inline Corners forces_of(const CornerSums<double>& r) {
         for (int c = 0; c < 8; ++c) f(i, c) = own[i][c];
     }
     return f;
+}
+
+// That they are minus the gradient of the energy there, and neither push nor turn the cell itself.
+template <typename Energy>
+void check_forces(const Energy& energy, const Corners& x, const Corners& f) {
+    Corners slope;
+    const double h = 1e-4 * kSpacing;
+    for (int i = 0; i < 24; ++i) {
+        const auto at = [&](double by) {
+            Corners moved = x;
+            moved.reshaped()[i] += by;
+            return energy(moved);
+        };
+        slope.reshaped()[i] = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+    }
+    CHECK((f + slope).norm() < 1e-8 * f.norm());
+    CHECK(f.rowwise().sum().norm() < 1e-13 * f.norm());
+    Vec3 torque = Vec3::Zero();
+    for (int c = 0; c < 8; ++c) torque += Vec3(x.col(c)).cross(Vec3(f.col(c)));
+    CHECK(torque.norm() < 1e-12 * f.norm() * kSpacing);
 }
 
 class Draw {

@@ -131,23 +131,8 @@ TEST_CASE("forces of a cell are minus the gradient of its energy, flowing or not
         Corners x = draw.turn() * flowed_so_far * draw.shaken(0.1);
         const State s = state_of(cell, x);
         flowed += n % 3 == 1 && flow_of(law, cell, s).d_alpha > 0;
-        const Corners f = force(law, cell, x);
-        Corners slope;
-        const double h = 1e-4 * kSpacing;
-        for (int i = 0; i < 24; ++i) {
-            const auto at = [&](double by) {
-                Corners moved = x;
-                moved.reshaped()[i] += by;
-                return energy(law, cell, moved);
-            };
-            slope.reshaped()[i] = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
-        }
-        CHECK((f + slope).norm() < 1e-8 * f.norm());
-        // Neither does it push or turn itself.
-        CHECK(f.rowwise().sum().norm() < 1e-13 * f.norm());
-        Vec3 torque = Vec3::Zero();
-        for (int c = 0; c < 8; ++c) torque += Vec3(x.col(c)).cross(Vec3(f.col(c)));
-        CHECK(torque.norm() < 1e-12 * f.norm() * kSpacing);
+        check_forces([&](const Corners& moved) { return energy(law, cell, moved); }, x,
+                     force(law, cell, x));
     }
     CHECK(flowed > 10);
 }

@@ -121,22 +121,7 @@ TEST_CASE("forces of a cell with a back stress are minus the gradient of its inc
         turned += both * both < 0.8 * contract(s.flowed.distortion, s.flowed.distortion) *
                                     contract(cell.back.strain, cell.back.strain);
         const Corners f = force(law, cell, x);
-        Corners slope;
-        const double h = 1e-4 * kSpacing;
-        for (int i = 0; i < 24; ++i) {
-            const auto at = [&](double by) {
-                Corners moved = x;
-                moved.reshaped()[i] += by;
-                return energy(law, cell, moved);
-            };
-            slope.reshaped()[i] = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
-        }
-        CHECK((f + slope).norm() < 1e-8 * f.norm());
-        // Neither does it push or turn itself, and it is turned with the cell.
-        CHECK(f.rowwise().sum().norm() < 1e-13 * f.norm());
-        Vec3 torque = Vec3::Zero();
-        for (int c = 0; c < 8; ++c) torque += Vec3(x.col(c)).cross(Vec3(f.col(c)));
-        CHECK(torque.norm() < 1e-12 * f.norm() * kSpacing);
+        check_forces([&](const Corners& moved) { return energy(law, cell, moved); }, x, f);
         const Mat3 turn = draw.turn();
         CHECK((force(law, cell, turn * x) - turn * f).norm() < 1e-11 * f.norm());
     }

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <random>
 
-#include "sim/cell_tangent.h"
 #include "sim/lattice_forces.h"
-#include "sim/lattice_transfer.h"
-#include "sim/node_stiffness.h"
 #include "sim/slab_cholesky.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/coarse_error.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -38,13 +36,6 @@ Aggregate shaken_block(const Material& material) {
     }
     shake(m.particle_position, 3, 0.06 * kSpacing);
     return m;
-}
-
-Vec3Array random_direction(std::size_t count) {
-    Vec3Array d;
-    d.resize(count);
-    shake(d, 11, 1);
-    return d;
 }
 
 double dot(const Vec3Array& a, const Vec3Array& b) {
@@ -108,27 +99,9 @@ TEST_CASE("the tangent's product is how the forces change, flow included") {
 TEST_CASE("coarse matrices are the tangent seen through the coarse corners, at any ratio") {
     for (const Material& material : kMaterials) {
         Aggregate m = shaken_block(material);
-        CellTangent tangent(m, m.cell_fill);
         for (const Vec3i& ratio :
              {Vec3i(1, 1, 1), Vec3i(2, 1, 2), Vec3i(2, 2, 2), Vec3i(4, 3, 1)}) {
-            const Lattice coarse = coarse_lattice(m.lattice, ratio);
-            const LatticeTransfer transfer(m.lattice, coarse, ratio);
-            NodeStiffness matrix(coarse);
-            matrix.add_cells(coarse, tangent.coarse_cells(m, {}, coarse, ratio));
-            const Vec3Array u = random_direction(particle_count(coarse));
-            Vec3Array fine, product, back, got;
-            fine.resize(m.particle_count());
-            for (auto* x : {&fine.x, &fine.y, &fine.z}) std::fill(x->begin(), x->end(), 0.0);
-            transfer.add_prolonged(u, fine);
-            tangent.product(m, {}, fine, product);
-            transfer.restricted(product, back);
-            matrix.product(u, got);
-            double largest = 0, off = 0;
-            for (std::size_t p = 0; p < back.size(); ++p) {
-                largest = std::max(largest, back.at(p).norm());
-                off = std::max(off, (back.at(p) - got.at(p)).norm());
-            }
-            CHECK(off < 1e-12 * largest);
+            CHECK(coarse_error(m, ratio) < 1e-12);
         }
     }
 }

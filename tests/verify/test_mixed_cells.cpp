@@ -7,10 +7,9 @@
 #include "mold/mold.h"
 #include "sim/cell_tangent.h"
 #include "sim/lattice_forces.h"
-#include "sim/lattice_transfer.h"
-#include "sim/node_stiffness.h"
 #include "sim/vector_clones.h"
 #include "tests/catch.h"
+#include "tests/sim/coarse_error.h"
 #include "tests/sim/force_checks.h"
 #include "tests/sim/steady_flow.h"
 
@@ -85,13 +84,7 @@ TEST_CASE("the tangent of cells of two materials is how their forces change, flo
             LatticeForces forces(m);
             forces.commit(m);
             shake(m, 0.005, 5);
-            Vec3Array way;
-            way.resize(m.particle_count());
-            std::mt19937 engine(11);
-            std::uniform_real_distribution<double> draw(-1, 1);
-            for (std::size_t p = 0; p < way.size(); ++p) {
-                way.set(p, {draw(engine), draw(engine), draw(engine)});
-            }
+            const Vec3Array way = test::random_direction(m.particle_count());
             CellTangent tangent(m, m.cell_fill);
             Vec3Array product;
             tangent.product(m, {}, way, product);
@@ -139,31 +132,8 @@ TEST_CASE("the tangent of cells of two materials is how their forces change, flo
 TEST_CASE("coarse cells of two materials are their tangent seen through the coarse corners") {
     Aggregate m = bar_with_ball(soft(), stiff());
     shake(m, 0.02);
-    CellTangent tangent(m, m.cell_fill);
     for (const Vec3i& ratio : {Vec3i(2, 1, 2), Vec3i(2, 2, 2), Vec3i(4, 3, 1)}) {
-        const Lattice coarse = coarse_lattice(m.lattice, ratio);
-        const LatticeTransfer transfer(m.lattice, coarse, ratio);
-        NodeStiffness matrix(coarse);
-        matrix.add_cells(coarse, tangent.coarse_cells(m, {}, coarse, ratio));
-        Vec3Array u, fine, product, back, got;
-        u.resize(particle_count(coarse));
-        std::mt19937 engine(11);
-        std::uniform_real_distribution<double> draw(-1, 1);
-        for (std::size_t p = 0; p < u.size(); ++p) {
-            u.set(p, {draw(engine), draw(engine), draw(engine)});
-        }
-        fine.resize(m.particle_count());
-        for (auto* x : {&fine.x, &fine.y, &fine.z}) std::fill(x->begin(), x->end(), 0.0);
-        transfer.add_prolonged(u, fine);
-        tangent.product(m, {}, fine, product);
-        transfer.restricted(product, back);
-        matrix.product(u, got);
-        double largest = 0, off = 0;
-        for (std::size_t p = 0; p < back.size(); ++p) {
-            largest = std::max(largest, back.at(p).norm());
-            off = std::max(off, (back.at(p) - got.at(p)).norm());
-        }
-        CHECK(off < 1e-10 * largest);
+        CHECK(test::coarse_error(m, ratio) < 1e-10);
     }
 }
 
