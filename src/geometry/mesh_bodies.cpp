@@ -367,13 +367,18 @@ class Settler {
         Shell &a = shells_[x], &b = shells_[y];
         TriMesh united;
         std::vector<int> origin;
-        const bool is_united = unite(a.mesh, b.mesh, united, origin);
-        const double sum = a.volume + b.volume, volume = signed_volume(united);
-        // Faces that lie on each other but for rounding may cut each other so that parts are lost.
-        const double least = (1 - kOnSurface) * std::max(a.volume, b.volume);
-        if (!is_united || volume < least) return !enters(a, b) && !enters(b, a);
+        const double sum = a.volume + b.volume;
+        double least = 1e-9 * std::abs(sum);
+        if (!unite(a.mesh, b.mesh, united, origin)) {
+            if (!unite_grown(a.mesh, b.mesh, united, origin)) return !enters(a, b) && !enters(b, a);
+            Box both = a.box;
+            both.grow(b.box);
+            const double smaller = std::min(a.box.size().norm(), b.box.size().norm());
+            least = 10 * kGrown * both.size().norm() * smaller * smaller;
+        }
+        const double volume = signed_volume(united);
         // Nothing in common: they only touch, and stay as they are.
-        if (std::abs(volume - sum) <= 1e-9 * std::abs(sum)) return true;
+        if (std::abs(volume - sum) <= least) return true;
         a.mesh = dress_pieces(std::move(united), origin, a.mesh, b.mesh, mesh_);
         a.volume = volume;
         a.box.grow(b.box);

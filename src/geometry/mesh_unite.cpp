@@ -21,7 +21,6 @@ namespace swage {
 namespace {
 
 constexpr double kOnSurface = 1e-9;  // of the size of both: no further from it
-constexpr double kNoArea = 1e-10;    // of the longest side squared
 
 // Which patches of one surface bound the union with another. Where the two lie on each other and
 // face the same way only `keep_common` ones do.
@@ -100,9 +99,9 @@ void merge_close(TriMesh& mesh, std::vector<int>& origin, double gap) {
     keep_triangles(mesh, keep);
 }
 
-// Triangles whose three corners lie in a row go; the middle one becomes a corner of the neighbour
-// across the longest side, which it lies on.
-void drop_flat(TriMesh& mesh, std::vector<int>& origin) {
+// Triangles whose three corners lie in a row but for `gap` go; the middle one becomes a corner of
+// the neighbour across the longest side, which it lies on.
+void drop_flat(TriMesh& mesh, std::vector<int>& origin, double gap) {
     std::map<std::pair<int, int>, std::vector<int>> at_side;  // from, to: triangles
     const auto side = [&](int t, int k) {
         return std::pair{mesh.triangle[t][k], mesh.triangle[t][(k + 1) % 3]};
@@ -124,7 +123,8 @@ void drop_flat(TriMesh& mesh, std::vector<int>& origin) {
                 longest = k;
             }
         }
-        const bool flat = area_vector(mesh.position, mesh.triangle[t]).norm() <= kNoArea * most;
+        const bool flat =
+            area_vector(mesh.position, mesh.triangle[t]).norm() <= 0.5 * gap * std::sqrt(most);
         return flat ? longest : -1;
     };
     std::vector<int> flat;
@@ -161,14 +161,34 @@ void drop_flat(TriMesh& mesh, std::vector<int>& origin) {
     }
 }
 
-}  // namespace
+// Whether what does not bound the union lies within it, or on it. A patch that is not parted where
+// it should be lies neither in nor out.
+bool holds(const TriangleTree& result, const CutPatches& cut, const std::vector<char>& outer,
+           double gap) {
+    std::vector<char> asked(cut.mesh.position.size(), 0);
+    for (std::size_t t = 0; t < cut.patch.size(); ++t) {
+        if (outer[cut.patch[t]]) continue;
+        for (const int i : cut.mesh.triangle[t]) {
+            if (asked[i]++) continue;
+            const Vec3& p = cut.mesh.position[i];
+            if (result.winding_number(p) < 0.5 && result.distance(p) > gap) return false;
+        }
+    }
+    return true;
+}
 
-bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+double size_of(const TriMesh& a, const TriMesh& b) {
+    Box box = box_of(a.position);
+    box.grow(box_of(b.position));
+    return box.size().norm();
+}
+
+// What is no further apart than `close` [m] in the result is one vertex.
+bool unite(const TriMesh& a, const TriMesh& b, double close, TriMesh& result,
+           std::vector<int>& origin) {
     CutPatches cut_a, cut_b;
     if (!cut_along_each_other(split_fans(a), split_fans(b), cut_a, cut_b)) return false;
-    Box box = box_of(a.position);
-    for (const Vec3& p : b.position) box.grow(p);
-    const double gap = kOnSurface * box.size().norm();
+    const double gap = kOnSurface * size_of(a, b);
     result = TriMesh();
     origin.clear();
     std::map<std::array<double, 3>, int> place;
@@ -187,13 +207,37 @@ bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>
             origin.push_back(base + cut.origin[t]);
         }
     };
-    add(cut_a, outer_patches(cut_a, b, gap, true), 0);
-    add(cut_b, outer_patches(cut_b, a, gap, false), static_cast<int>(a.triangle.size()));
-    merge_close(result, origin, gap);
-    if (!is_closed(result)) return false;
-    drop_flat(result, origin);
+    const std::vector<char> outer_a = outer_patches(cut_a, b, gap, true),
+                            outer_b = outer_patches(cut_b, a, gap, false);
+    add(cut_a, outer_a, 0);
+    add(cut_b, outer_b, static_cast<int>(a.triangle.size()));
+    merge_close(result, origin, close);
+    if (result.triangle.empty() || !is_closed(result)) return false;
+    const TriangleTree tree(result);
+    if (!holds(tree, cut_a, outer_a, 2 * close) || !holds(tree, cut_b, outer_b, 2 * close)) {
+        return false;
+    }
+    drop_flat(result, origin, 2 * close);
     drop_unused_positions(result);
     return true;
+}
+
+}  // namespace
+
+bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+    return unite(a, b, kOnSurface * size_of(a, b), result, origin);
+}
+
+bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+    const double by = kGrown * size_of(a, b);
+    const Box box = box_of(b.position);
+    const Eigen::Array3d half = (0.5 * box.size()).cwiseMax(by);
+    const Vec3 larger = (half + by) / half;
+    TriMesh grown = b;
+    for (Vec3& p : grown.position) {
+        p = box.center() + larger.cwiseProduct(p - box.center());
+    }
+    return unite(a, grown, 4 * by, result, origin);
 }
 
 }  // namespace swage

@@ -14,4 +14,9 @@ namespace swage {
 // cannot be made (a surface that crosses itself, say). Positions and triangles only.
 bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
 
+// The same with b larger by kGrown of the size of both: faces of the two that lie on each other but
+// for rounding, and so cut each other in parts only, do so no more.
+constexpr double kGrown = 2e-8;
+bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
+
 }  // namespace swage
