@@ -33,6 +33,10 @@ double ramp(double t, double a, double b) {
 }
 double step(double t, double a) { return t < a ? 0 : 1; }
 double clamp(double x, double a, double b) { return std::max(a, std::min(b, x)); }
+// As a product where it is one.
+double power(double x, double y) {
+    return y == 2 ? x * x : y == 3 ? x * x * x : portable::pow(x, y);
+}
 double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 double smallest(const double* x, int count) { return *std::min_element(x, x + count); }
 double largest(const double* x, int count) { return *std::max_element(x, x + count); }
@@ -86,7 +90,7 @@ const Function kFunctions[] = {
     {.name = "sqrt", .one = std::sqrt, .arguments = "sqrt(x)", .help = "square root"},
     {.name = "exp", .one = portable::exp, .arguments = "exp(x)", .help = "e to the power x"},
     {.name = "log", .one = portable::log, .arguments = "log(x)", .help = "natural logarithm"},
-    {.name = "pow", .two = portable::pow, .arguments = "pow(x, y)", .help = "the same as x ^ y"},
+    {.name = "pow", .two = power, .arguments = "pow(x, y)", .help = "the same as x ^ y"},
     {.name = "hypot",
      .two = portable::hypot,
      .arguments = "hypot(x, y)",
@@ -110,6 +114,9 @@ const Function* function_named(std::string_view name) {
     return nullptr;
 }
 
+// For x ^ y: muparser's own sign is the C library's pow, whose last bits differ between libraries.
+constexpr const char* kPower = "#";
+
 mu::Parser make_parser() {
     mu::Parser parser;
     parser.ClearFun();
@@ -121,6 +128,7 @@ mu::Parser make_parser() {
         if (f.three != nullptr) parser.DefineFun(f.name, f.three);
         if (f.many != nullptr) parser.DefineFun(f.name, f.many);
     }
+    parser.DefineOprt(kPower, power, mu::prPOW, mu::oaRIGHT);
     return parser;
 }
 
@@ -159,6 +167,7 @@ class Reader {
     struct Bracket {
         std::size_t at;
         bool of_function;
+        bool compares = false;  // in what is read of it, since the last && or other part of it
     };
 
     [[noreturn]] static void refuse(std::size_t at, const std::string& sentence) {
@@ -270,6 +279,7 @@ class Reader {
         const std::string_view rest = text_.substr(at_);
         for (const char* two : {"<=", ">=", "==", "!=", "&&", "||"}) {
             if (rest.starts_with(two)) {
+                note_comparison(two);
                 write(two, at_);
                 at_ += 2;
                 return;
@@ -292,9 +302,24 @@ class Reader {
         } else if (std::string_view("+-*/^<>?:").find(sign) == std::string_view::npos) {
             refuse(at_, fmt::format("\"{}\" does not belong in an expression", sign));
         }
-        write(std::string_view(&sign, 1), at_);
+        note_comparison(rest.substr(0, 1));
+        write(sign == '^' ? kPower : std::string_view(&sign, 1), at_);
         ++at_;
         if (sign == '+' || sign == '-') refuse_sign_of_nothing(sign);
+    }
+
+    // 1 < x < 2 would ask whether 0 or 1, which 1 < x is, is less than 2.
+    void note_comparison(std::string_view sign) {
+        bool& compares = bracket_.empty() ? compares_ : bracket_.back().compares;
+        if (sign == "&&" || sign == "||" || sign == "?" || sign == ":" || sign == ",") {
+            compares = false;
+        } else if (sign.find_first_of("<>=!") == 0) {
+            if (compares) {
+                refuse(at_,
+                       "only two values can be compared: write a < b && b < c, or use brackets");
+            }
+            compares = true;
+        }
     }
 
     void open_bracket(std::size_t at, bool of_function) {
@@ -324,6 +349,7 @@ class Reader {
     std::vector<std::size_t> origin_;
     std::vector<bool> is_used_;
     std::vector<Bracket> bracket_;
+    bool compares_ = false;  // as Bracket::compares, outside of all
 };
 
 // `at`: the sign of the user's text where it stands; 0 at the end.

@@ -37,6 +37,7 @@ struct LoadColumn {
     const char* name;
     double (*value)(const LoadCurve& load, std::size_t row);
     bool is_of_axis = false;  // only of what turns about one
+    bool is_work = false;
 };
 template <int axis>
 double place(const LoadCurve& load, std::size_t row) {
@@ -63,14 +64,16 @@ constexpr LoadColumn kLoadColumns[] = {
     {"torque y [N m]", part<&LoadCurve::torque, 1>},
     {"torque z [N m]", part<&LoadCurve::torque, 2>},
     {"torque about its axis [N m]", value<&LoadCurve::axial_torque>, true},
-    {"work [J]", value<&LoadCurve::work>},
+    {"work [J]", value<&LoadCurve::work>, false, true},
     {"penetration [m]", value<&LoadCurve::penetration>},
     {"contacts", value<&LoadCurve::contacts>},
 };
 template <typename Act>
 void for_columns(const LoadCurve& load, const Act& act) {
     for (const LoadColumn& column : kLoadColumns) {
-        if (load.axis || !column.is_of_axis) act(column);
+        // Gravity's work is an entry of the books.
+        const bool stands_twice = column.is_work && load.name == "gravity";
+        if (!stands_twice && (load.axis || !column.is_of_axis)) act(column);
     }
 }
 

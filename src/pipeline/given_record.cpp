@@ -43,7 +43,8 @@ Json settings_json(const SimSettings& settings) {
     return {{"tolerance", settings.tolerance},
             {"iteration_limit", settings.iteration_limit},
             {"halving_limit", settings.halving_limit},
-            {"contact_stiffness", settings.stiffness_of_contacts()},
+            {"contact_stiffness",
+             settings.contact_stiffness > 0 ? Json(settings.contact_stiffness) : Json(nullptr)},
             {"grip_stiffness", settings.grip_stiffness},
             {"self_contact", settings.self_contact},
             {"step_safety", settings.step_safety},
@@ -52,6 +53,8 @@ Json settings_json(const SimSettings& settings) {
             {"medium_density_kg_m3", settings.medium_density},
             {"drag_coefficient", settings.drag_coefficient},
             {"directional_drag_Pa_s_m", settings.directional_drag},
+            {"directional_drag_along",
+             settings.directional_drag_along == DragAlong::normal ? "normal" : "motion"},
             {"gravity_m_s2", {settings.gravity.x(), settings.gravity.y(), settings.gravity.z()}}};
 }
 

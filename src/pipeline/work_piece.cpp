@@ -345,6 +345,22 @@ std::string division_text(const WorkPiece& piece, const InputMesh& input) {
                        before, after, kLongestSkinEdge);
 }
 
+namespace {
+
+constexpr double kOtherVolume = 0.01;  // from here on it is told
+
+// What a skin encloses beside what it stands for: the new matter fills it all.
+void note_volume(const Aggregate& was, const TriMesh& skin, std::vector<std::string>& finding) {
+    const double matter = present_volume(was), share = signed_volume(skin) / matter - 1;
+    if (!(std::abs(share) > kOtherVolume)) return;
+    finding.push_back(fmt::format(
+        "molded anew: the skin encloses {:.3g} % {} than the {} that its matter took up; the new "
+        "matter fills it, at {:.3g} times the density",
+        100 * std::abs(share), share > 0 ? "more" : "less", volume_text(matter), 1 / (1 + share)));
+}
+
+}  // namespace
+
 WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin,
                     bool carries) {
     InputMesh input;
@@ -356,7 +372,7 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     as_it_stands.probe.clear();
     // It is painted already, but where it was cut; what is made for a block's box is not.
     const bool is_blank = skin.kind == SkinKind::boundary && body.mold.kind == MoldKind::block;
-    if (!is_blank) as_it_stands.color.reset();
+    if (!is_blank) as_it_stands.color.reset(), as_it_stands.wears_material = false;
     // Bent, its box says nothing of how thick it is.
     as_it_stands.mold.across.reset();
     as_it_stands.mold.spacing = in_whole_layers(piece.matter.lattice.spacing,
@@ -372,6 +388,7 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     anew.matter = mold(input.to_mold(), body.material, as_it_stands.mold, insets, &anew.finding,
                        insets.empty() ? nullptr : &masses);
     dress(input, as_it_stands, skin, anew);
+    note_volume(piece.matter, input.to_mold(), anew.finding);
     if (carries) anew.inset = carry_insets(insets, std::move(looks), nullptr, anew.matter);
     const std::string divided = division_text(anew, input);
     if (!divided.empty()) log_info("{}", divided);

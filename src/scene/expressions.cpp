@@ -153,16 +153,20 @@ void ExpressionReader::expect_unit(TableReader& table, const std::string& key, c
     const bool is_number = node.kind == Node::Kind::whole || node.kind == Node::Kind::real;
     if (is_number && quantity == Quantity::angle) table.warn_of_turns(key, node, node.number);
     if (node.kind != Node::Kind::text) return;
+    const std::string_view text = node.text;
+    const auto after_blanks = [&](std::size_t at) {
+        return std::min(text.find_first_not_of(" \t\r\n", at), text.size());
+    };
     try {
-        const auto number = leading_number(node.text);
+        std::size_t at = after_blanks(0);
+        const auto number = leading_number(text.substr(at));
         if (!number) return;
-        std::size_t at = number->size;
-        while (at < node.text.size() && node.text[at] == ' ') ++at;
-        if (at == node.text.size() && quantity == Quantity::angle) {
+        at = after_blanks(at + number->size);
+        if (at == text.size() && quantity == Quantity::angle) {
             table.warn_of_turns(key, node, number->value);
         }
-        const auto unit = leading_unit(std::string_view(node.text).substr(at));
-        if (!unit || at + unit->size != node.text.size()) return;
+        const auto unit = leading_unit(text.substr(at));
+        if (!unit || after_blanks(at + unit->size) != text.size()) return;
     } catch (const TextError&) {
         return;  // reported when it was read
     }

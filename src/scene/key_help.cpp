@@ -37,7 +37,7 @@ constexpr KeyHelp kSceneKeys[] = {
     {"[material]", "mechanics",
      "cells: right for any Poisson's ratio; springs: only the connections of the papers"},
     {"[material]", "elasticity",
-     "hencky: materials that can yield and break; neo-hookean: rubber; storakers: foam"},
+     "hencky: can yield and break, and is what yields; neo-hookean: rubber; storakers: foam"},
     {"[material]", "young_modulus", "required without a name", {}, "-"},
     {"[material]", "poisson_ratio", "springs always have 0.25"},
     {"[material]", "density", "required without a name", {}, "-"},

@@ -20,8 +20,9 @@ std::string read_part_name(TableReader& table, std::set<std::string>& names) {
         table.mistake(
             "name",
             fmt::format("\"{}\" must be letters, digits and _, beginning with a letter", name));
-    } else if (name == "gravity") {
-        table.mistake("name", "\"gravity\" is reserved; choose another name");
+    } else if (name == "gravity" || name == "load" || name == "machine") {
+        // "load work [J]" and the like are columns of the curves.
+        table.mistake("name", fmt::format("\"{}\" is reserved; choose another name", name));
     } else if (!names.insert(name).second) {
         table.mistake("name", fmt::format("two parts are called \"{}\"", name));
     }

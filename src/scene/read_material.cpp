@@ -21,6 +21,7 @@ constexpr double kMuchFriction = 2;
 constexpr double kRubberPoisson = 0.4;
 constexpr double kMostStrength = 0.1;                   // of young_modulus
 constexpr double kLeastYield = 1e-6, kMostYield = 0.2;  // likewise, of what there is
+constexpr double kOtherMatter = 600;                    // times more or less: a unit is missing
 // Beyond all matter, and far from where numbers end.
 constexpr Range kStiffness = {.low = 1e-3, .high = 1e15};  // [Pa]
 constexpr Range kDensity = {.low = 1e-3, .high = 1e9};     // [kg/m3]
@@ -77,6 +78,19 @@ void read_surface(TableReader& table, Material& material) {
     }
 }
 
+// A rubber or foam that is told to yield is taken as what can.
+void take_as_yielding(TableReader& table, Material& material) {
+    if (material.elasticity == Elasticity::hencky || !std::isfinite(material.yield_stress)) return;
+    const std::string name = name_in(kElasticityNames, material.elasticity);
+    material.elasticity = Elasticity::hencky;
+    if (table.find("elasticity") != nullptr) {
+        table.mistake("elasticity",
+                      name +
+                          " matter does not yield: leave out yield_stress (or give inf) and "
+                          "flow_curve, or use elasticity = \"hencky\"");
+    }
+}
+
 }  // namespace
 
 void read_material_numbers(TableReader& table, bool needs_all, Material& material) {
@@ -97,6 +111,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
         table.quantity("density", Quantity::density, kDensity, material.density);
     read_flow(table, material);
     read_back_stress(table, material);
+    take_as_yielding(table, material);
     read_fracture(table, material);
     table.quantity("damping_ratio", Quantity::number, between(0, kMostDampingRatio),
                    material.damping_ratio);
@@ -146,17 +161,16 @@ void take_known(TableReader& table, const std::string& name, const MaterialCatal
     table.mistake("name", fmt::format("there is no material \"{}\"{}{}", name, hint, all));
 }
 
-// A rubber or foam that is told to yield is taken as what can.
-void refuse_flow_of_rubber(TableReader& table, Material& material) {
-    if (material.elasticity == Elasticity::hencky || !std::isfinite(material.yield_stress)) return;
-    const std::string name = name_in(kElasticityNames, material.elasticity);
-    material.elasticity = Elasticity::hencky;
-    if (table.find("elasticity") != nullptr) {
-        table.mistake("elasticity",
-                      name +
-                          " matter does not yield: leave out yield_stress (or give inf) and "
-                          "flow_curve, or use elasticity = \"hencky\"");
+void warn_of_strange_change(TableReader& table, const char* key, Quantity quantity,
+                            const Material& known, double was, double is) {
+    const double times = is / was;
+    if (table.find(key) == nullptr || !(was > 0) ||
+        (times > 1 / kOtherMatter && times < kOtherMatter)) {
+        return;
     }
+    table.warn(key, fmt::format("{} is {:.1e} of what {} has, {}: is a unit missing or wrong?",
+                                quantity_text(is, quantity), times, known.name,
+                                quantity_text(was, quantity)));
 }
 
 void warn_of_strange_yield(TableReader& table, const Material& material) {
@@ -180,10 +194,12 @@ void read_material(TableReader& table, const AssetPaths& assets,
     const Node* node = table.find("name");
     std::string name;
     const bool is_named = table.text("name", name);
+    Material known;
     bool is_custom = !is_named;
     if (!name.empty()) {
         take_known(table, name, catalogue(table.reading(), assets, scene_folder, inputs), assets,
                    material, look);
+        known = material;
     } else if (is_named && node->kind == Node::Kind::text) {
         table.mistake("name", "the material's name is empty");
     } else if (table.place().line == 0) {
@@ -197,7 +213,12 @@ void read_material(TableReader& table, const AssetPaths& assets,
     table.choice<Mechanics>("mechanics", kMechanicsNames, material.mechanics);
     read_material_numbers(table, is_custom, material);
     read_look(table, look);
-    refuse_flow_of_rubber(table, material);
+    if (!known.name.empty() && known.name == name) {
+        warn_of_strange_change(table, "young_modulus", Quantity::stress, known, known.young_modulus,
+                               material.young_modulus);
+        warn_of_strange_change(table, "density", Quantity::density, known, known.density,
+                               material.density);
+    }
     warn_of_strange_yield(table, material);
     table.finish();
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -40,6 +41,28 @@ TEST_CASE("an expression computes as mathematics does") {
     CHECK(value_of("sin(pi/2) + atan2(0, 1)") == 1);
     CHECK(value_of("hypot(3, 4) + mod(7, 4) + pow(2, 3)") == 16);
     CHECK_FALSE(std::signbit(value_of("-0")));
+}
+
+TEST_CASE("only two values can be compared, but in brackets or beside others") {
+    const char* one = "only two values can be compared: write a < b && b < c, or use brackets";
+    CHECK(mistake_of("1 < 2 < 3") == fmt::format("6: {}", one));
+    CHECK(mistake_of("0 <= t && t <= 1 == 1", {"t"}) == fmt::format("17: {}", one));
+    CHECK(mistake_of("min(1, 0 < 2 > 1)") == fmt::format("13: {}", one));
+    CHECK(value_of("1 < 2 && 2 < 3 || 4 < 3") == 1);
+    CHECK(value_of("(1 < 2) == (2 < 3)") == 1);
+    CHECK(value_of("1 < 2 ? 3 > 4 : 5 > 6") == 0);
+    CHECK(value_of("max(1 < 2, 2 < 3)") == 1);
+}
+
+TEST_CASE("a power is to the last bit the same in both ways to write it") {
+    std::mt19937 engine(3);
+    std::uniform_real_distribution<double> draw(0, 4);
+    for (int n = 0; n < 2000; ++n) {
+        const double x = draw(engine), y = draw(engine);
+        CHECK(evaluate_text("x ^ y", {{"x", x}, {"y", y}}) ==
+              evaluate_text("pow(x, y)", {{"x", x}, {"y", y}}));
+        CHECK(evaluate_text("x^2", {{"x", x}}) == x * x);
+    }
 }
 
 TEST_CASE("a number in an expression may carry a unit") {

@@ -109,6 +109,18 @@ TEST_CASE("the table has one row a frame and as many cells as columns") {
     CHECK(lines[5].rfind("5,0.4,", 0) == 0);
 }
 
+TEST_CASE("no two columns of the table have one name, under gravity too") {
+    const StageCurves curves =
+        test::part_curves("1-floor", 1, {{"holder", Pose{}}, {"gravity", Pose{}}});
+    std::string heads = lines_of(csv_text(curves)).front();
+    std::replace(heads.begin(), heads.end(), ',', '\n');
+    std::vector<std::string> names = lines_of(heads);
+    CHECK(std::count(names.begin(), names.end(), "gravity work [J]") == 1);
+    CHECK(std::count(names.begin(), names.end(), "gravity travel [m]") == 1);
+    std::sort(names.begin(), names.end());
+    CHECK(std::adjacent_find(names.begin(), names.end()) == names.end());
+}
+
 TEST_CASE("loads are plotted against what moves most") {
     const PlotAxis turn = plot_axis(turning_grip(10, 2.0));
     CHECK(turn.label == "turn of turner, left [deg]");

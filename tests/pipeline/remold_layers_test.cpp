@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layers of what is molded anew: how stiff a bar of two materials then is, and bars that have
-// become thinner than a cell.
+// Layers of what is molded anew: how stiff a bar of two materials then is, bars that have become
+// thinner than a cell, and a skin that has left its matter.
 #include <Eigen/Geometry>
+#include <numeric>
 
 #include "geometry/box.h"
 #include "pipeline/work_piece.h"
@@ -114,4 +115,22 @@ TEST_CASE("a bar of one or two cells is molded anew also once it is thinner than
             CHECK(anew.matter.mass() == Approx(mass).epsilon(1e-6));
         }
     }
+}
+
+TEST_CASE("a skin that encloses more or less than its matter took up is told of as it is filled") {
+    InputMesh input;
+    input.mesh = box_mesh(-0.5 * kSize, 0.5 * kSize);
+    BodySpec body;
+    body.mold.across = 3;
+    const auto told_of = [&](double wider) {
+        WorkPiece piece = make_work_piece(input, body, {});
+        for (Vec3& p : piece.position) p.y() *= wider;
+        const std::vector<std::string> told = mold_anew(piece, body, {}).finding;
+        return std::accumulate(told.begin(), told.end(), std::string());
+    };
+    CHECK(told_of(1.03).find("encloses 3 % more than the 0.004 m3 that its matter took up") !=
+          std::string::npos);
+    CHECK(told_of(1.03).find("0.971 times the density") != std::string::npos);
+    CHECK(told_of(0.95).find("encloses 5 % less") != std::string::npos);
+    CHECK(told_of(1.005).find("encloses") == std::string::npos);
 }

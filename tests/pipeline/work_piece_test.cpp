@@ -343,7 +343,13 @@ TEST_CASE("a painted body that is molded anew keeps its colour, and cut faces ke
     REQUIRE(piece.skin.material.size() == 2);
     BodySpec body;
     body.mold.across = 3;
-    body.color = Vec3(0.5, 0, 0);
+    const bool wears_material = GENERATE(false, true);
+    if (wears_material) {
+        body.look = SurfaceMaterial{.color = Vec3(0, 0.5, 0)};
+        body.wears_material = true;
+    } else {
+        body.color = Vec3(0.5, 0, 0);
+    }
     const TriMesh skin = mold_anew(piece, body, {kind}).skin;
     REQUIRE(skin.material.size() >= 2);
     CHECK(skin.material[0].color == Vec3(0.5, 0, 0));

@@ -191,6 +191,13 @@ TEST_CASE("values out of range are refused with the range") {
         {"breaking foam",
          material("elasticity = \"storakers\"\nstrength = \"1 kPa\"\ntoughness = 3"),
          {"storakers matter does not break"}},
+        {"metal without its unit",
+         with(&Parts::material,
+              "[material]\nname = \"structural_steel\"\nyoung_modulus = 210\n"
+              "density = 7.85\n"),
+         {"5:17: warning: 210 Pa is 1.0e-09 of what structural_steel has, 210 GPa: is a unit "
+          "missing",
+          "6:11: warning: 7.85 kg/m3 is 1.0e-03 of what structural_steel has, 7850 kg/m3"}},
         {"foam that is told to yield",
          material("elasticity = \"storakers\"\nyield_stress = \"1 kPa\""),
          {"storakers matter does not yield"}},

@@ -302,6 +302,13 @@ TEST_CASE("mistakes in machine files are named at their letter") {
         {"gravity",
          kHead + "[[grip]]\nname = \"gravity\"\nfrom = [0, 0, 0]\nto = [1, 1, \"reach\"]\n",
          {"6:8: \"gravity\" is reserved; choose another name"}},
+        {"what would be a column of the curves twice",
+         kHead + "[[grip]]\nname = \"machine\"\nfrom = [0, 0, 0]\nto = [1, 1, \"reach\"]\n",
+         {"6:8: \"machine\" is reserved; choose another name"}},
+        {"another unit behind a blank",
+         kHead + kGrip +
+             "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, 0]\nradius = \" 3 N \"\n",
+         {"13:14: radius: \"3 N\" is a force; expected a length"}},
         {"turn without need",
          kHead + kGrip + "[grip.motion]\naxis = [0, 0, 1]\n",
          {"10:8: warning: axis and pivot have no effect without turn"}},
