@@ -82,8 +82,11 @@ struct OneMixed {
     CornerSums<double> sums;
     Laminate<double> found;
 };
+// The search for its jump begins where the last forces found it: far past where a cell yields there
+// is more than one, and its books are those of the one that pushes.
 OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
-                   const MixedCell& cell, const std::array<ParticleId, 8>& corner) {
+                   const MixedCell& cell, const std::array<ParticleId, 8>& corner,
+                   const MixedCells::Seen* seen = nullptr) {
     OneMixed one;
     double at[3][8];
     Triple<double> normal;
@@ -93,7 +96,13 @@ OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws
     }
     read_mixed(matter.particle_position, cell, corner, 0, at, one.phase, normal);
     one.sums = sum_corners(at);
-    laminate(one.sums, one.phase, normal, matter.lattice.spacing, one.found);
+    JumpGuess<double> guess{};
+    if (seen != nullptr && seen->jump_found) {
+        const auto& [x, y, z] = seen->jump;
+        const std::array<double, 9>& i = seen->inverse;
+        guess = {1, {x, y, z}, {{i[0], i[1], i[2]}, {i[3], i[4], i[5]}, {i[6], i[7], i[8]}}};
+    }
+    laminate(one.sums, one.phase, normal, matter.lattice.spacing, one.found, guess);
     return one;
 }
 
@@ -214,7 +223,7 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
         if (found == Forces::fresh && !seen_[n].may_flow) continue;
-        const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);
+        const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n], &seen_[n]);
         SlotLengths was;
         if (growths) was = rest_lengths(matter, cell.cell, &cell);
         for (int p = 0; p < 2; ++p) {
@@ -246,7 +255,8 @@ double MixedCells::elastic_energy(const Aggregate& matter,
                                   const std::vector<MaterialLaw>& laws) const {
     return ordered_sum_of(batches_.cell.size(), kCellsPerChunk, [&](std::size_t n) {
         const MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
-        return energy_in(matter, cell, one_mixed(matter, laws, cell, batches_.corner[n]));
+        return energy_in(matter, cell,
+                         one_mixed(matter, laws, cell, batches_.corner[n], &seen_[n]));
     });
 }
 

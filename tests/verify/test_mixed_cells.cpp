@@ -73,6 +73,36 @@ TEST_CASE("cells of two materials push by minus the gradient of their energy") {
     }
 }
 
+TEST_CASE("what flows far in cells of two materials is booked as it pushed") {
+    // Clay round tin, pressed to two thirds and bulged meanwhile.
+    Material clay{.young_modulus = 5e6, .poisson_ratio = 0.45, .yield_stress = 3e4};
+    Material tin{.young_modulus = 5e10, .poisson_ratio = 0.36, .yield_stress = 1.5e7};
+    Aggregate m = bar_with_ball(clay, tin);
+    LatticeForces forces(m);
+    const int steps = 200;
+    Vec3Array f, before;
+    double work = 0, plastic = 0, most = 0;
+    for (int n = 0; n <= steps; ++n) {
+        const double e = 0.4 * n / steps;
+        const Vec3Array from = m.particle_position;
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            const Vec3& x = m.particle_reference.at(p);
+            const double wave = 0.3 * e * kSpacing * std::sin(7 * x.x() + 3 * x.y());
+            m.particle_position.set(p, {std::exp(0.5 * e) * x.x() + wave, std::exp(-e) * x.y(),
+                                        std::exp(0.5 * e) * x.z() - wave});
+        }
+        forces.find(m, Flow::trial, f);
+        for (std::size_t p = 0; n > 0 && p < f.size(); ++p) {
+            work -= 0.5 * (f.at(p) + before.at(p)).dot(m.particle_position.at(p) - from.at(p));
+        }
+        before = f;
+        plastic += forces.commit(m, Forces::fresh).plastic;
+        most = std::max(most, std::abs(forces.elastic_energy(m) + plastic - work));
+    }
+    CHECK(plastic > 0);
+    CHECK(most < 0.02 * work);
+}
+
 TEST_CASE("the tangent of cells of two materials is how their forces change, flow included") {
     Material yields = stiff(), curved = stiff(), rubbery = rubber();
     yields.yield_stress = 3e4, yields.hardening = 1e5;
@@ -234,6 +264,6 @@ TEST_CASE("damping does not hold what flows, of two materials neither") {
     const test::SteadyFlow drawn = test::flow_steadily(m, 0.4, 4000);
     CHECK(drawn.plastic > 0);
     // Strained as far as the matter branches take 1.9 times what the flow does. Where both meet in
-    // a cell they flow apart, and the length at rest is only one of both: 0.09.
-    CHECK(drawn.given < 0.12 * drawn.plastic);
+    // a cell they flow apart, and the length at rest is only one of both: 0.14.
+    CHECK(drawn.given < 0.15 * drawn.plastic);
 }
