@@ -22,6 +22,7 @@ namespace swage {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-12;  // of a direction
 
 // When a body that flies by itself touches a standing plate [s]; where a medium drags at it, no
 // sooner than that.
@@ -42,8 +43,13 @@ double touches_after(const BoxShape& plate, const Pose& world_from_plate, const 
     if (body.start.spin != Vec3::Zero()) {
         low = up.dot(centre - world_from_plate.translation) - reach;
     }
-    const double gap = low - half, pull = -up.dot(gravity);
-    double speed = -up.dot(body.start.velocity);
+    // Along a plate that stands straight but for rounding it does not come nearer.
+    const auto towards = [&](const Vec3& way) {
+        const double part = -up.dot(way);
+        return std::abs(part) > kRounding * way.norm() ? part : 0;
+    };
+    const double gap = low - half, pull = towards(gravity);
+    double speed = towards(body.start.velocity);
     if (drags && pull > 0) speed = std::max(0.0, speed);  // it stops what flies away, however soon
     if (gap <= 0) return 0;
     const double square = speed * speed + 2 * pull * gap;

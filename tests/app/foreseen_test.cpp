@@ -106,6 +106,8 @@ TEST_CASE("a body that cannot reach the floor in its stage is told how long it w
     CHECK(says(told(brief, "velocity = [0, \"3 m/s\", 0]\n"),
                "never touches floor: nothing brings it there"));
     CHECK(says(told(brief, "velocity = [\"3 m/s\", 0, 0]\n"), "never touches floor"));
+    // Nor along a floor whose normal lies across it but for rounding.
+    CHECK(says(told(brief + "axis = \"z\"\n", "velocity = [1, 0, 1]\n"), "never touches floor"));
     CHECK(!says(told(brief, "velocity = [0, \"-7 m/s\", 0]\n"), "touch"));
     // A slope is as near along its normal only, and what rotates may reach down.
     CHECK(!says(told(weight + "duration = \"0.63 s\"\n", "spin = [0, 0, \"9 rad/s\"]\n"), "touch"));
