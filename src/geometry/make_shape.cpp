@@ -168,11 +168,14 @@ ShapeValues complete(const ShapeInfo& info, const std::map<std::string, double>&
     return values;
 }
 
-// Keeps about seven decimals of the size, and one of each texture coordinate, so that files are
-// short and read back to the same numbers.
+// Keeps about seven decimals of the size and four of how thin it is, and one of each texture
+// coordinate, so that files are short and read back to the same numbers.
 void tidy(TriMesh& mesh) {
-    const double size = box_of(mesh.position).size().maxCoeff();
-    const double per_unit = portable::pow(10.0, 7 - std::ceil(portable::log10(size)));
+    const Vec3 size = box_of(mesh.position).size();
+    const auto steps = [](double length, int decimals) {
+        return portable::pow(10.0, decimals - std::ceil(portable::log10(length)));
+    };
+    const double per_unit = std::max(steps(size.maxCoeff(), 7), steps(size.minCoeff(), 4));
     const auto rounded = [](double x, double steps) {
         return std::round(x * steps) / steps + 0.0;  // no negative zero
     };

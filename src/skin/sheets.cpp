@@ -55,10 +55,12 @@ bool lies_in(const Section& section, const Loop& loop, const Vec2& at) {
     return inside;
 }
 
+// Most of it: where an earlier cut has been, points of a hole lie on the loop around it.
 bool lies_in(const Section& section, const Loop& loop, const Loop& hole) {
-    return std::all_of(hole.segment.begin(), hole.segment.end(), [&](int s) {
+    const auto inside = std::count_if(hole.segment.begin(), hole.segment.end(), [&](int s) {
         return lies_in(section, loop, section.point[section.segment[s][0]]);
     });
+    return 2 * static_cast<std::size_t>(inside) > hole.segment.size();
 }
 
 double distance_at_rest(const Section& section, const Loop& a, const Loop& b) {

@@ -194,6 +194,16 @@ TEST_CASE("a shape comes out the same at any thread count") {
     CHECK(hash(3) == one);
 }
 
+TEST_CASE("a sheet is as thin as it is asked to be") {
+    for (const double thickness : {1e-6, 1.5e-6, 0.123e-3}) {
+        const TriMesh sheet =
+            make_shape("sheet",
+                       {{"length", 100}, {"width", 50}, {"thickness", thickness}, {"division", 4}})
+                .mesh;
+        CHECK(signed_volume(sheet) == Approx(100 * 50 * thickness).epsilon(1e-3));
+    }
+}
+
 TEST_CASE("what cannot be made is refused by name") {
     const auto message = [](const std::string& name, const std::map<std::string, double>& values) {
         try {
