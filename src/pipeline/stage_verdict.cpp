@@ -111,6 +111,18 @@ std::string flow_text(const StageEnd& end, double by_flow, double share) {
                                           : "try more frames or smaller cells");
 }
 
+std::string fracture_text(const StageEnd& end, double by_fracture, double share) {
+    const bool mixed = std::any_of(end.bodies.begin(), end.bodies.end(), [](const WorkPiece& body) {
+        return !body.matter.mixed_cell.empty();
+    });
+    return fmt::format(
+        "the energy books do not close: fracture has given {:.3g} J, {:.3g} % of the energy "
+        "involved "
+        "is from nowhere, and it should only take some; cells beside a break hold more as springs "
+        "than they did before{}: try smaller cells",
+        by_fracture, 100 * share, mixed ? ", those of two unlike materials most" : "");
+}
+
 // Of what the bodies began with and were given, of what the books hold by now or of the most that
 // was stored on the way, the share that is missing or too much. Fracture and flow take energy: what
 // they give is from nowhere. What contacts held at the start and were let go of has no part in it:
@@ -359,8 +371,10 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     const double taken = end.last.friction + end.last.plastic;
     // At rest, what snaps or slips through is lost, and no mistake.
     const bool is_open = in_motion(sim.solver) ? std::abs(share) > kMostGain : share < -kMostGain;
-    if (is_open && share < 0 && by_flow > -end.last.remainder) {
-        warn(flow_text(end, by_flow, -share));
+    const double by_fracture = std::max(0.0, -end.last.fracture);
+    if (is_open && share < 0 && std::max(by_flow, by_fracture) > -end.last.remainder) {
+        warn(by_flow > by_fracture ? flow_text(end, by_flow, -share)
+                                   : fracture_text(end, by_fracture, -share));
     } else if (is_open) {
         warn(fmt::format("the energy books do not close: {:.3g} % of the energy involved is {}; {}",
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",

@@ -210,6 +210,22 @@ TEST_CASE("energy that flow gives is from nowhere, but what a back stress has st
     CHECK_FALSE(is_open(told(-0.3 * work)));
 }
 
+TEST_CASE("energy that fracture gives is told as what it is") {
+    CutBar bar("glass");
+    const double work = 1e-6 * bar.stiffness();
+    const auto told = [&](double fracture) {
+        FrameReport last;
+        last.pieces = 2;
+        last.work = work, last.elastic = work - fracture, last.fracture = fracture;
+        return bar.told_of(bar.reading.scene->stage[0], last, 1);
+    };
+    CHECK_FALSE(is_open(told(0.3 * work)));
+    CHECK(is_open(told(-0.3 * work)));
+    CHECK(told(-0.3 * work).find("fracture has given") != std::string::npos);
+    CHECK(told(-0.3 * work).find("more frames") == std::string::npos);
+    CHECK(bar.told(-work, -work).find("fracture") == std::string::npos);
+}
+
 TEST_CASE("volume that flow has changed in a stage is told, what pressure changes is not") {
     const bool springs = GENERATE(true, false);
     const auto told_after = [&](double size, double flowed) {
