@@ -23,6 +23,7 @@ Vec3 forward(const Vec3& way) {
 
 void begin_row(LoadCurve& load, const Pose& pose) {
     load.pose.push_back(pose);
+    load.gone.push_back(Vec3::Zero());
     load.force.push_back(Vec3::Zero());
     load.torque.push_back(Vec3::Zero());
     load.axial_torque.push_back(0);
@@ -129,7 +130,8 @@ StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<T
 void StageCurves::pass(const std::vector<ToolLoad>& loads) {
     for (std::size_t n = 0; n < way_.size() && n < loads.size(); ++n) {
         Way& way = way_[n];
-        const Pose& now = loads[n].pose;
+        Pose now = loads[n].pose;
+        now.translation -= loads[n].jump;
         const Vec3 turn = turn_between(way.pose, now);
         const double angle = turn.norm();
         if (way.turn_axis.isZero() && angle > 1e-12) {
@@ -155,6 +157,7 @@ void StageCurves::add(int frame, const FrameReport& report, const std::vector<Pr
         begin_row(load, felt.pose);
         load.turn.back() = way_[n].turn;
         load.travel.back() = way_[n].travel;
+        load.gone.back() = way_[n].pose.translation - load.pose.front().translation;
         load.force.back() = felt.force;
         load.torque.back() = felt.torque;
         if (load.axis) {
@@ -206,19 +209,16 @@ std::string csv_text(const StageCurves& curves) {
 
 std::vector<double> stroke_of(const LoadCurve& load) {
     constexpr double kStraight = 0.05;  // of the way
-    const auto gone = [&](std::size_t row) -> Vec3 {
-        return load.pose[row].translation - load.pose.front().translation;
-    };
     Vec3 farthest = Vec3::Zero();
-    for (std::size_t row = 0; row < load.pose.size(); ++row) {
-        if (gone(row).norm() > farthest.norm()) farthest = gone(row);
+    for (const Vec3& gone : load.gone) {
+        if (gone.norm() > farthest.norm()) farthest = gone;
     }
     std::vector<double> stroke;
     if (farthest.isZero()) return stroke;
     const Vec3 along = farthest.normalized();
-    for (std::size_t row = 0; row < load.pose.size(); ++row) {
-        stroke.push_back(along.dot(gone(row)));
-        const Vec3 beside = gone(row) - stroke.back() * along;
+    for (const Vec3& gone : load.gone) {
+        stroke.push_back(along.dot(gone));
+        const Vec3 beside = gone - stroke.back() * along;
         if (beside.norm() > kStraight * farthest.norm()) return {};
     }
     return stroke;
@@ -241,8 +241,7 @@ std::vector<LoadPeaks> peaks_of(const StageCurves& curves) {
                     peaks.axial = {axial, curves.frame()[row]};
                 }
             }
-            const Vec3 gone = load.pose[row].translation - load.pose.front().translation;
-            peaks.stroke = std::max(peaks.stroke, gone.norm());
+            peaks.stroke = std::max(peaks.stroke, load.gone[row].norm());
             if (std::abs(load.turn[row]) > std::abs(peaks.turn)) peaks.turn = load.turn[row];
         }
         all.push_back(peaks);

@@ -20,7 +20,9 @@ struct LoadCurve {
     // [rad] since the start of the stage, past 180 degrees too; about the axis of its first turn,
     // pointed so that its largest component is more than 0.
     std::vector<double> turn;
-    std::vector<double> travel;  // [m] of path since the start of the stage
+    // Of what it acts on, without the jumps of its place where that becomes other [m].
+    std::vector<double> travel;  // of path since the start of the stage
+    std::vector<Vec3> gone;      // from where it was at the start
     std::vector<Vec3> force;     // [N] exerted on the matter
     std::vector<Vec3> torque;    // [N m] about the pose's origin
     // Of a part that turns: the axis, pointed as that of `turn`, and the torque about it [N m].
@@ -32,8 +34,8 @@ struct LoadCurve {
 
     template <typename Io>
     void visit(Io& io) {
-        auto& [of, at, turned, gone, pushes, turns, about, axial, done, deep, points] = *this;
-        io(of, at, turned, gone, pushes, turns, about, axial, done, deep, points);
+        auto& [of, at, turned, path, way, pushes, turns, about, axial, done, deep, points] = *this;
+        io(of, at, turned, path, way, pushes, turns, about, axial, done, deep, points);
     }
 };
 
@@ -75,7 +77,7 @@ class StageCurves {
     struct Way {
         using IsPlain = Way;
 
-        Pose pose;
+        Pose pose;                      // but for jumps
         Vec3 turn_axis = Vec3::Zero();  // its largest component more than 0
         double turn = 0, travel = 0;
     };

@@ -114,6 +114,7 @@ std::vector<LoadSum> Simulation::Rooms::load_sums(const Drive& now) const {
         if (!pushes(b).has_gravity()) continue;
         const double own = body[b].matter->mass();
         all.back().centre = (mass * all.back().centre + own * more.back().centre) / (mass + own);
+        all.back().jump = (mass * all.back().jump + own * more.back().jump) / (mass + own);
         all.back().force += more.back().force;
         mass += own;
     }
@@ -141,6 +142,8 @@ std::vector<ToolLoad> Simulation::Rooms::loads(const Drive& now,
         loads.back().name = "gravity";
         loads.back().pose = middle.back();
     }
+    const std::size_t first = loads.size() - pushes.size();
+    for (std::size_t n = 0; n < pushes.size(); ++n) loads[first + n].jump = pushes[n].jump;
     return loads;
 }
 

@@ -73,10 +73,11 @@ LoadSet::LoadSet(const Apparatus& apparatus, const SimSettings& settings, int bo
     : apparatus_(&apparatus), body_(body), gravity_(settings.gravity) {}
 
 void LoadSet::connections_changed(const Aggregate& matter) {
-    const std::shared_ptr<const Parted> before = std::exchange(parted_, nullptr);
     bool presses = false;
     for_each_load([&](std::size_t, const Load& load) { presses = presses || load.force.empty(); });
     if (!presses) return;
+    const std::vector<Centre> centre = centres(matter);
+    const std::shared_ptr<const Parted> before = std::exchange(parted_, nullptr);
     const std::size_t count = matter.surface.size();
     Parted parted;
     parted.is_off.resize(count);
@@ -90,6 +91,7 @@ void LoadSet::connections_changed(const Aggregate& matter) {
         parted_ = std::make_shared<const Parted>(std::move(parted));
     }
     renew_last(matter, before.get());
+    keep_centres(centre, matter);
 }
 
 std::vector<OpenFace> LoadSet::pressed(const Load& load, const SurfacePoints& surface,
@@ -138,9 +140,11 @@ void LoadSet::renew_last(const Aggregate& matter, const Parted* before) {
 
 void LoadSet::leave_alone(const Aggregate& matter, const std::vector<ParticleId>& particles) {
     if (particles.empty()) return;
+    const std::vector<Centre> before = centres(matter);
     if (left_alone_.empty()) heavy_mass_ = matter.particle_mass;
     for (ParticleId p : particles) heavy_mass_[std::size_t(p)] = 0;
     left_alone_.insert(left_alone_.end(), particles.begin(), particles.end());
+    keep_centres(before, matter);
     if (!started_) return;
     for_each_load(
         [&](std::size_t l, const Load& load) { last_.moment[l] = moments_of(load, matter); });
@@ -193,6 +197,49 @@ std::vector<Vec3> LoadSet::moments_of(const Load& load, const Aggregate& matter)
     if (left_alone_.empty()) return moment;
     for (std::size_t n = 0; n < moment.size(); ++n) moment[n] = pushed(load, n, matter).moment;
     return moment;
+}
+
+double LoadSet::Patches::all() const { return std::accumulate(area.begin(), area.end(), 0.0); }
+
+LoadSet::Patches LoadSet::patches_of(const Load& load, const Aggregate& matter) const {
+    Patches of = {areas_of(load, matter), positions_of(load, matter), {}};
+    of.share.assign(of.area.size(), 1);
+    for (std::size_t n = 0; n < of.area.size() && !left_alone_.empty(); ++n) {
+        const Pushed part = pushed(load, n, matter);
+        of.share[n] = part.share;
+        of.area[n] *= part.share;
+        if (part.share != 0) of.position[n] = part.moment / part.share;
+    }
+    return of;
+}
+
+std::vector<LoadSet::Centre> LoadSet::centres(const Aggregate& matter) const {
+    std::vector<Centre> centres = centre_;
+    centres.resize(count());
+    const auto put = [&](std::size_t n, double all, const Vec3& moment) {
+        centres[n].is_of_nothing = !(all > 0);
+        if (all > 0) centres[n].place = moment / all;
+    };
+    for_each_load([&](std::size_t l, const Load& load) {
+        const Patches of = patches_of(load, matter);
+        Vec3 moment = Vec3::Zero();
+        for (std::size_t n = 0; n < of.area.size(); ++n) moment += of.area[n] * of.position[n];
+        put(l, of.all(), moment);
+    });
+    if (has_gravity()) {
+        const std::vector<double>& heavy = heavy_mass(matter);
+        put(apparatus_->load.size(), std::accumulate(heavy.begin(), heavy.end(), 0.0),
+            mass_moment(heavy, matter.particle_position));
+    }
+    return centres;
+}
+
+void LoadSet::keep_centres(const std::vector<Centre>& before, const Aggregate& matter) {
+    centre_ = before;
+    centre_ = centres(matter);
+    for (std::size_t n = 0; n < centre_.size(); ++n) {
+        centre_[n].jump += centre_[n].place - before[n].place;
+    }
 }
 
 void LoadSet::balance(const Load& load, const Aggregate& matter, const std::vector<double>& area,
@@ -332,24 +379,24 @@ void LoadSet::commit(const Aggregate& matter, const Drive& now, std::vector<doub
 std::vector<LoadSum> LoadSet::sums(const Aggregate& matter, const Drive& now) const {
     std::vector<LoadSum> sums(apparatus_->load.size());
     for_each_load([&](std::size_t l, const Load& load) {
-        std::vector<double> area = areas_of(load, matter);
-        std::vector<Vec3> position = positions_of(load, matter),
-                          force = forces_of(load, now.load_strength[l], matter);
-        for (std::size_t n = 0; n < area.size() && !left_alone_.empty(); ++n) {
-            const Pushed part = pushed(load, n, matter);
-            area[n] *= part.share;
-            force[n] *= part.share;
-            if (part.share != 0) position[n] = part.moment / part.share;
-        }
-        sums[l] = sum_of(area, position, force);
+        const Patches of = patches_of(load, matter);
+        std::vector<Vec3> force = forces_of(load, now.load_strength[l], matter);
+        for (std::size_t n = 0; n < force.size(); ++n) force[n] *= of.share[n];
+        sums[l] = sum_of(of.area, of.position, force);
+        if (!(of.all() > 0) && !centre_.empty()) sums[l].centre = centre_[l].place;
     });
     if (has_gravity()) {
         const std::vector<double>& heavy = heavy_mass(matter);
         const double mass = std::accumulate(heavy.begin(), heavy.end(), 0.0);
-        const Vec3 moment = mass_moment(heavy, matter.particle_position);
-        sums.push_back(
-            {mass > 0 ? Vec3(moment / mass) : moment, mass * gravity(now), Vec3::Zero()});
+        Vec3 centre = mass_moment(heavy, matter.particle_position);
+        if (mass > 0) {
+            centre /= mass;
+        } else if (!centre_.empty()) {
+            centre = centre_.back().place;
+        }
+        sums.push_back({centre, mass * gravity(now)});
     }
+    for (std::size_t n = 0; n < centre_.size(); ++n) sums[n].jump = centre_[n].jump;
     return sums;
 }
 

@@ -21,6 +21,9 @@ struct LoadSum {
     Vec3 centre = Vec3::Zero();  // of the loaded area, or of mass [m]
     Vec3 force = Vec3::Zero();   // [N]
     Vec3 torque = Vec3::Zero();  // about the centre [N m]
+    // By which the centre has moved since the stage began without anything having moved: what is
+    // pushed is other than it was. The way of what is pushed is that of the centre without it [m].
+    Vec3 jump = Vec3::Zero();
 };
 
 class LoadSet {
@@ -64,13 +67,14 @@ class LoadSet {
     void commit(const Aggregate& matter, const Drive& now, std::vector<double>& work);
 
     // By load, then gravity where there is any, of what is pushed; zero for loads on another body.
+    // The centre of what is left alone altogether stays where it was then.
     std::vector<LoadSum> sums(const Aggregate& matter, const Drive& now) const;
     std::size_t count() const { return apparatus_->load.size() + has_gravity(); }
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
         bool parted = parted_ != nullptr;
-        io(started_, parted, last_, left_alone_, heavy_mass_);
+        io(started_, parted, last_, left_alone_, heavy_mass_, centre_);
         Parted now = parted_ ? *parted_ : Parted{};
         if (parted) io(now);
         if constexpr (Io::kReads) {
@@ -110,6 +114,30 @@ class LoadSet {
     };
     Pushed pushed(const Load& load, std::size_t n, const Aggregate& matter) const;
     std::vector<Vec3> moments_of(const Load& load, const Aggregate& matter) const;
+    // Of each of a load's points what is pushed of it.
+    struct Patches {
+        std::vector<double> area;    // [m2]
+        std::vector<Vec3> position;  // its middle [m]
+        std::vector<double> share;   // of the whole point
+
+        double all() const;
+    };
+    Patches patches_of(const Load& load, const Aggregate& matter) const;
+
+    // By load, then gravity: of what is pushed.
+    struct Centre {
+        Vec3 place = Vec3::Zero();  // where nothing is: where it was last [m]
+        Vec3 jump = Vec3::Zero();   // as LoadSum has it
+        bool is_of_nothing = false;
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(place, jump, is_of_nothing);
+        }
+    };
+    std::vector<Centre> centres(const Aggregate& matter) const;
+    // After what is pushed has become other than it was with these.
+    void keep_centres(const std::vector<Centre>& before, const Aggregate& matter);
     // NOTE: the points sample a closed surface, and their area vectors sum to nothing only nearly.
     // What is left would drive a free body, or a piece of it, for ever, so it is taken off.
     void balance(const Load& load, const Aggregate& matter, const std::vector<double>& area,
@@ -150,6 +178,7 @@ class LoadSet {
     Settled last_;
     std::vector<ParticleId> left_alone_;
     std::vector<double> heavy_mass_;  // heavy_mass(), once anything is left alone
+    std::vector<Centre> centre_;      // when what is pushed became other last; empty: it has not
 };
 
 }  // namespace swage

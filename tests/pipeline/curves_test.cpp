@@ -185,6 +185,25 @@ TEST_CASE("what comes back on its way comes back in the plot, and beyond its sta
     CHECK(turn.value.back() == Approx(0).margin(1e-9));
 }
 
+TEST_CASE("the way of a load leaves out what its place jumps by as it acts on something else") {
+    const auto at = [](const Vec3& place, const Vec3& jump) {
+        return ToolLoad{"push", {Quat::Identity(), place}, jump};
+    };
+    StageCurves curves = test::part_curves("s", 1, {at({1, 0, 0}, {0, 0, 0})});
+    FrameReport report;
+    report.load = {at({1, -0.1, 0}, {0, 0, 0})};
+    curves.add(2, report);
+    curves.pass({at({0.5, -0.2, 0}, {-0.5, 0, 0})});
+    report.load = {at({0.5, -0.3, 0}, {-0.5, 0, 0})};
+    curves.add(3, report);
+    const LoadCurve& push = curves.load()[0];
+    CHECK(push.pose[2].translation == Vec3(0.5, -0.3, 0));
+    CHECK(push.travel[1] == Approx(0.1));
+    CHECK(push.travel[2] == Approx(0.3));
+    CHECK(stroke_of(push).at(2) == Approx(0.3));
+    CHECK(peaks_of(curves)[0].stroke == Approx(0.3));
+}
+
 TEST_CASE("peaks are the most that was felt, in the frame it was, and the farthest way") {
     StageCurves curves = test::part_curves("s", 7, {{"ram", Pose{}}, {"idle", Pose{}}});
     const double forces[] = {3, -8, 8, 1}, torques[] = {0.5, 0.25, -1, 0}, ways[] = {1, 4, 2, -3};
