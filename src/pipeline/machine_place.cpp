@@ -12,11 +12,11 @@
 #include "base/portable_math.h"
 #include "base/text.h"
 #include "base/text_error.h"
+#include "base/way_text.h"
 #include "geometry/mesh_check.h"
 #include "pipeline/limit_watch.h"
 #include "pipeline/rounded_text.h"
 #include "pipeline/stage_machine.h"
-#include "scene/way_text.h"
 
 namespace swage {
 

@@ -11,9 +11,10 @@
 namespace swage {
 
 // Of a work-piece that nothing holds, as it lies at the start: a sentence, where all that acts on
-// it takes it away from every tool, or tips what is stiff, though it would lie there by its
-// weight alone. Empty: it stays, or that is not sure. `lies_as_told`: false where what it is
-// by then may lie otherwise; then only what is sure of any shape is told.
+// it takes it away from every tool, or aside (pipeline/slide_doubt.h), or tips what is stiff,
+// though it would lie there by its weight alone. Empty: it stays, or that is not sure.
+// `lies_as_told`: false where what it is by then may lie otherwise; then only what is sure of any
+// shape is told.
 std::string rest_doubt(const StageSpec& stage, const Machine& machine, const Aggregate& matter,
                        bool lies_as_told);
 

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "machines/machine.h"
 #include "pipeline/rest_doubt.h"
+#include "pipeline/slide_doubt.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
 #include "pipeline/touching_points.h"
@@ -117,13 +118,18 @@ std::vector<std::string> doubts_of_start(const SceneSpec& scene,
         const bool is_first = &stage == &scene.stage.front(), moves = in_motion(stage.sim.solver);
         const bool flies = is_first && moves && spec.load.empty() && spec.gravity_strength.empty();
         const bool lies = !moves && bodies.size() == 1;
-        if (spec.stands() && spec.grip.empty() && spec.blade.empty() && (flies || lies)) {
+        const bool is_held = !spec.grip.empty();
+        if (spec.stands() && spec.blade.empty() && (lies || (flies && !is_held))) {
             std::string doubt;
             try {
                 const Machine machine =
                     stage_machine(stage, matter, {}, bodies.front().skin, bodies.front().coarser);
-                doubt = flies ? flight_doubt(scene, machine, bodies)
-                              : rest_doubt(stage, machine, matter, is_first);
+                if (flies) {
+                    doubt = flight_doubt(scene, machine, bodies);
+                } else {
+                    doubt = is_held ? slide_doubt(stage, machine, matter, is_first)
+                                    : rest_doubt(stage, machine, matter, is_first);
+                }
                 if (lies && !doubt.empty()) doubt = stage.name + ": " + doubt;
             } catch (const Error&) {  // the stage tells that itself
             }

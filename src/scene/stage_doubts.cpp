@@ -8,8 +8,8 @@
 
 #include "base/expression.h"
 #include "base/text_error.h"
+#include "base/way_text.h"
 #include "machines/load_name.h"
-#include "scene/way_text.h"
 
 namespace swage {
 

@@ -7,7 +7,6 @@
 
 #include "sim/hanging.h"
 #include "sim/piece_sums.h"
-#include "sim/steadying.h"
 
 namespace swage {
 
@@ -56,9 +55,7 @@ std::vector<std::vector<ParticleId>> FreePieces::loose_pieces() const {
 }
 
 void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force) const {
-    if (pushes.count() == 0 || std::ranges::all_of(gripped_.firm, [](char f) { return f != 0; })) {
-        return;
-    }
+    if (pushes.count() == 0 || is_firm_throughout()) return;
     add_steadying_forces(matter_, apparatus_, gripped_, to, pushes_on(pushes, to), force);
 }
 
@@ -74,16 +71,38 @@ bool FreePieces::has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Ar
         if (way[n].norm() > count[n] * far) fallen_.push_back(static_cast<int>(n));
     }
     if (fallen_.empty()) return false;
-    keep_loose(pushes_on(pushes, to), std::vector<double>(way.size(), 0.0));
+    keep_loose(pushes, to, nullptr);
     return !fallen_.empty();
 }
 
 bool FreePieces::begins_to_fall(const LoadSet& pushes, const Drive& to, const Vec3Array& contact) {
     fallen_.resize(static_cast<std::size_t>(gripped_.pieces.count));
     std::iota(fallen_.begin(), fallen_.end(), 0);
-    keep_loose(pushes_on(pushes, to),
-               sums_of(gripped_.pieces, 0.0, [&](std::size_t p) { return contact.at(p).norm(); }));
+    keep_loose(pushes, to, &contact);
     return !fallen_.empty();
+}
+
+bool FreePieces::is_pushed_off(const LoadSet& pushes, const Drive& to) {
+    fallen_.clear();
+    if (is_firm_throughout() || pushes.count() == 0) return false;
+    const std::vector<LeftFree> left = left_of(pushes, to);
+    for (std::size_t n = 0; n < left.size(); ++n) {
+        const int piece = static_cast<int>(n);
+        if (gripped_.is_held(piece) && left[n].is_pushed_off()) fallen_.push_back(piece);
+    }
+    return !fallen_.empty();
+}
+
+Vec3 FreePieces::push_off(const LoadSet& pushes, const Drive& to) const {
+    const auto held = std::ranges::find_if(fallen_, [&](int n) { return gripped_.is_held(n); });
+    if (held == fallen_.end()) return Vec3::Zero();
+    return left_of(pushes, to)[std::size_t(*held)].push;
+}
+
+Vec3 FreePieces::turn_off(const LoadSet& pushes, const Drive& to) const {
+    if (are_several() || is_firm_throughout() || pushes.count() == 0) return Vec3::Zero();
+    const LeftFree left = left_of(pushes, to).front();
+    return left.is_driven() && !left.is_pushed_off() ? left.turn : Vec3(Vec3::Zero());
 }
 
 // Loads and gravity on each particle.
@@ -97,16 +116,25 @@ Vec3Array FreePieces::pushes_on(const LoadSet& pushes, const Drive& to) const {
     return push;
 }
 
-// Of the fallen pieces those in no grip which loads and gravity drive somewhere, by more than is
-// borne [N].
-void FreePieces::keep_loose(const Vec3Array& push, const std::vector<double>& borne) {
-    const auto pushed =
-        sums_of(gripped_.pieces, Vec3(Vec3::Zero()), [&](std::size_t p) { return push.at(p); });
-    const auto size =
-        sums_of(gripped_.pieces, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+std::vector<LeftFree> FreePieces::left_of(const LoadSet& pushes, const Drive& to) const {
+    return left_free(matter_, apparatus_, gripped_, to, pushes_on(pushes, to));
+}
+
+// Of the fallen pieces those which loads and gravity drive where no grip holds them, by more than
+// is borne there.
+void FreePieces::keep_loose(const LoadSet& pushes, const Drive& to, const Vec3Array* contact) {
+    const Vec3 none = Vec3::Zero();
+    const auto on = [&](std::size_t p) { return contact != nullptr ? contact->at(p) : none; };
+    const auto size = sums_of(gripped_.pieces, 0.0, [&](std::size_t p) { return on(p).norm(); });
+    const auto sum = sums_of(gripped_.pieces, none, on);
+    const std::vector<LeftFree> left = left_of(pushes, to);
     std::erase_if(fallen_, [&](int n) {
-        const double net = pushed[n].norm();
-        return gripped_.is_held(n) || net <= kLittlePush * size[n] || borne[n] > kBorne * net;
+        const Vec3& push = left[n].push;
+        const double net = push.norm();
+        // What a grip holds it bears, however much, and that is nothing along ways that it leaves.
+        const bool is_borne =
+            gripped_.is_held(n) ? -sum[n].dot(push) > kBorne * net * net : size[n] > kBorne * net;
+        return !left[n].is_pushed_off() || is_borne;
     });
 }
 

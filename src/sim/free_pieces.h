@@ -3,6 +3,7 @@
 // fall, so these leave such a piece alone from then on.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -10,6 +11,7 @@
 #include "sim/gripped_pieces.h"
 #include "sim/held_point.h"
 #include "sim/load_set.h"
+#include "sim/steadying.h"
 
 namespace swage {
 
@@ -40,8 +42,17 @@ class FreePieces {
     bool has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Array& start, double far);
     // What is stiff beside its weight has not gone far by the time it is given up: whether any
     // piece is pushed somewhere by more than `contact`, forces of tools, grips and the body itself,
-    // can bear.
+    // can bear there.
     bool begins_to_fall(const LoadSet& pushes, const Drive& to, const Vec3Array& contact);
+    // Whether loads and gravity push any piece along a way that its grips leave it, and that would
+    // have no end where no tool stands in it, nor the body itself.
+    bool is_pushed_off(const LoadSet& pushes, const Drive& to);
+    // What pushes the first of those, in a grip, that did any of these when last asked along such a
+    // way [N]; 0: none is in a grip.
+    Vec3 push_off(const LoadSet& pushes, const Drive& to) const;
+    // About which axis loads and gravity turn the body where its grips leave it only that [rad/s2];
+    // 0: they do not.
+    Vec3 turn_off(const LoadSet& pushes, const Drive& to) const;
     // How many of them loads and gravity leave alone from now on and did not before. Not what is
     // all there is.
     int let_fall(LoadSet& pushes) { return let_float(pushes, gripped_.pieces, fallen_); }
@@ -56,8 +67,12 @@ class FreePieces {
     }
 
   private:
+    bool is_firm_throughout() const {
+        return std::ranges::all_of(gripped_.firm, [](char f) { return f != 0; });
+    }
     Vec3Array pushes_on(const LoadSet& pushes, const Drive& to) const;
-    void keep_loose(const Vec3Array& push, const std::vector<double>& borne);
+    std::vector<LeftFree> left_of(const LoadSet& pushes, const Drive& to) const;
+    void keep_loose(const LoadSet& pushes, const Drive& to, const Vec3Array* contact);
     int let_float(LoadSet& pushes, const Pieces& pieces, const std::vector<int>& some);
 
     const Aggregate& matter_;

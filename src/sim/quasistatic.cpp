@@ -109,7 +109,9 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome, Unsolved unsolved) {
     StaticMove move = begin_move(from, to, depth, outcome.body[0]);
     move.let_go = unsolved == Unsolved::leave;
-    Relaxation found = search_.find(forces_, move);
+    const bool goes_off =
+        forces_.contacts.stand_still(matter_, from, to) && forces_.is_pushed_off(to);
+    Relaxation found = goes_off ? Relaxation{.falls = true} : search_.find(forces_, move);
     outcome.iterations += found.iterations;
     if (!found.converged || smallest_cell_volume(matter_) <= kSmallestCellVolume) {
         const std::string met = this->met(move);

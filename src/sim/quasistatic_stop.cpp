@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "base/way_text.h"
 #include "sim/quasistatic.h"
 #include "sim/vector_sums.h"
 
@@ -48,6 +49,20 @@ bool is_lifted(const Apparatus& apparatus, const Drive& at, const Vec3& weight) 
         for (const Vec3& one : apparatus.load[n].force) sum += at.load_strength[n] * one;
     }
     return sum.dot(weight) < 0;
+}
+
+// Where loads push more aside than all that acts pushes up or down; else 0.
+Vec3 pushed_aside(const std::vector<LoadSum>& sums, const Vec3& gravity) {
+    Vec3 push = Vec3::Zero();
+    for (const LoadSum& one : sums) push += one.force;
+    const Vec3 down = gravity.normalized();  // or 0
+    const Vec3 along = push.dot(down) * down, aside = push - along;
+    return aside.norm() > along.norm() ? aside : Vec3(Vec3::Zero());
+}
+
+const char* pushers(const LoadSet& pushes, const Apparatus& apparatus) {
+    if (apparatus.load.empty()) return "gravity pulls it";
+    return pushes.has_gravity() ? "loads and gravity push it" : "loads push it";
 }
 
 }  // namespace
@@ -101,6 +116,27 @@ std::string QuasistaticSolver::acts_at_once(const StaticMove& move) {
 
 void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
                              const std::string& met) {
+    const Vec3 push = tried.falls ? forces_.free.push_off(forces_.pushes, move.to) : Vec3::Zero();
+    if (!push.isZero(0)) {
+        fail(ExitCode::stopped,
+             "{}: the work-piece{} goes off at {:.4g} s: {} with {} along the world's {}, which "
+             "its grips leave free, and equilibria cannot move: hold it that way too (`along`), or "
+             "let it move with solver = \"explicit\"",
+             apparatus_.name, has_broken(matter_) ? ", which has broken," : "", move.to.time,
+             pushers(forces_.pushes, apparatus_), quantity_text(push.norm(), Quantity::force),
+             way_text(push.normalized()));
+    }
+    const Vec3 aside = tried.falls ? pushed_aside(forces_.pushes.sums(matter_, move.to),
+                                                  forces_.pushes.gravity(move.to))
+                                   : Vec3::Zero();
+    if (!aside.isZero(0)) {
+        fail(ExitCode::stopped,
+             "{}: the work-piece{} goes off along the world's {} at {:.4g} s, as nothing holds it "
+             "there against loads, and equilibria cannot move: hold it, or let it move with "
+             "solver = \"explicit\"",
+             apparatus_.name, has_broken(matter_) ? ", which has broken," : "",
+             way_text(aside.normalized()), move.to.time);
+    }
     if (tried.falls) {
         fail(ExitCode::stopped,
              "{}: the work-piece{} falls at {:.4g} s, as nothing holds it against gravity and "
@@ -115,6 +151,11 @@ void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
         advice =
             "no tool touches it any more: the loads lift it off, as nothing holds it; hold it, "
             "lower them, or let it move with solver = \"explicit\"";
+    } else if (const Vec3 turn = forces_.free.turn_off(forces_.pushes, move.to); !turn.isZero(0)) {
+        advice = fmt::format(
+            "{} round the world's {}, and its grips leave it free to turn so: hold it, or let it "
+            "move with solver = \"explicit\"",
+            pushers(forces_.pushes, apparatus_), way_text(turn.normalized()));
     } else if (!at_once.empty()) {
         advice = at_once;
         if (matter_.yields()) advice += "; matter that flows under what it cannot bear needs less";

@@ -67,8 +67,7 @@ void StaticForces::find(const Drive& to, double moved) {
     mirrored = lattice.find(matter, Flow::trial, force);
     contacts.add_forces(matter, to, force, moved);
     pushes.add_forces(matter, to, force);
-    const bool may_lie = !apparatus.tool.empty() || (may_touch_itself && free.are_several());
-    if (!may_lie) free.steady(pushes, to, force);
+    if (!may_lie()) free.steady(pushes, to, force);
     add_restraint(matter.particle_position,
                   {held, drag, hold, pushes.heavy_mass(matter), pushes.gravity(to)}, force);
     self.add_forces(force);
@@ -105,6 +104,11 @@ bool StaticForces::begins_to_fall(const Drive& to) {
     contacts.add_forces(matter, to, contact);
     self.add_forces(contact);
     return free.begins_to_fall(pushes, to, contact);
+}
+
+bool StaticForces::is_pushed_off(const Drive& to) {
+    return !may_lie() && free.is_pushed_off(pushes, to) &&
+           free.push_off(pushes, to).norm() > tolerance_ * push_measure(to);
 }
 
 int StaticForces::let_hang(const Drive& to) {

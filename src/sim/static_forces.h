@@ -47,8 +47,14 @@ struct StaticForces {
         return free.has_fallen(pushes, move.to, move.start, extent());
     }
     bool begins_to_fall(const Drive& to);
+    // Whether nothing stands in the way of what is pushed off, which is pushed by more than may be
+    // left over.
+    bool is_pushed_off(const Drive& to);
     int let_hang(const Drive& to);
 
+    bool may_lie() const {  // some of it, on something
+        return !apparatus.tool.empty() || (may_touch_itself && free.are_several());
+    }
     double extent() const {  // [m]
         return matter.lattice.spacing * matter.lattice.cell_count.maxCoeff();
     }

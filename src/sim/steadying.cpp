@@ -2,6 +2,7 @@
 #include "sim/steadying.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +10,43 @@
 
 namespace swage {
 
+namespace {
+
+// What of it is across all these axes, of which so many sum up to `axes`.
+Vec3 across(const Mat3& axes, double count, const Vec3& push) {
+    constexpr double kBarred = 1e-6;  // of all points: more than rounding
+    if (!(count > 0)) return push;
+    const Eigen::SelfAdjointEigenSolver<Mat3> along(axes / count);
+    Vec3 left = Vec3::Zero();
+    for (int n = 0; n < 3; ++n) {
+        if (along.eigenvalues()[n] > kBarred) continue;
+        const Vec3 way = along.eigenvectors().col(n);
+        left += way.dot(push) * way;
+    }
+    return left;
+}
+
+// Of each piece, from the sum over its particles.
+std::vector<Vec3> centres_of(const Pieces& pieces, const Aggregate& matter,
+                             const std::vector<double>& mass) {
+    auto centre = sums_of(pieces, Vec3(Vec3::Zero()), [&](std::size_t p) -> Vec3 {
+        return matter.particle_mass[p] * matter.particle_position.at(p);
+    });
+    for (std::size_t n = 0; n < mass.size(); ++n) centre[n] /= mass[n];
+    return centre;
+}
+
+std::vector<double> masses_of(const Pieces& pieces, const Aggregate& matter) {
+    return sums_of(pieces, 0.0, [&](std::size_t p) { return matter.particle_mass[p]; });
+}
+
+}  // namespace
+
 // (M + B) q = W, for each piece: q its shift and turn, W what pushes come to, B what grips bar, so
 // stiff that it makes no difference to what they leave free.
-void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
-                          const GrippedPieces& gripped, const Drive& now, const Vec3Array& push,
-                          Vec3Array& force) {
+std::vector<LeftFree> left_free(const Aggregate& matter, const Apparatus& apparatus,
+                                const GrippedPieces& gripped, const Drive& now,
+                                const Vec3Array& push) {
     constexpr double kBars = 1e9;  // of the piece's mass, all points of grips together
     using Vec6 = Eigen::Matrix<double, 6, 1>;
     using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -21,9 +54,8 @@ void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
     const std::vector<double>& m = matter.particle_mass;
     const Pieces& pieces = gripped.pieces;
     const Vec3 none = Vec3::Zero();
-    const auto mass = sums_of(pieces, 0.0, [&](std::size_t p) { return m[p]; });
-    auto center = sums_of(pieces, none, [&](std::size_t p) -> Vec3 { return m[p] * at(p); });
-    for (std::size_t n = 0; n < mass.size(); ++n) center[n] /= mass[n];
+    const std::vector<double> mass = masses_of(pieces, matter);
+    const std::vector<Vec3> center = centres_of(pieces, matter, mass);
     const auto arm = [&](std::size_t p) -> Vec3 {
         return at(p) - center[std::size_t(pieces.particle_piece[p])];
     };
@@ -39,6 +71,7 @@ void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
     // Turns are counted by the way that they take what lies far out.
     std::vector<double> reach, barred(mass.size(), 0);
     std::vector<Mat6> bars(mass.size(), Mat6(Mat6::Zero()));
+    std::vector<LeftFree> left(mass.size());
     for (std::size_t n = 0; n < mass.size(); ++n) {
         reach.push_back(std::sqrt(inertia[n].trace() / mass[n]));
         if (!(reach[n] > 0)) reach[n] = 1;  // a single particle: it has no turns
@@ -58,8 +91,9 @@ void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
             }
         }
     }
-    std::vector<Vec3> shift, turn;
     for (std::size_t n = 0; n < mass.size(); ++n) {
+        left[n].size = size[n];
+        left[n].push = across(bars[n].topLeftCorner<3, 3>(), barred[n], net[n]);
         Mat6 stiff = kBars * mass[n] / std::max(1.0, barred[n]) * bars[n];
         stiff.topLeftCorner<3, 3>() += mass[n] * Mat3::Identity();
         stiff.bottomRightCorner<3, 3>() += inertia[n].trace() > 0
@@ -68,14 +102,26 @@ void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
         Vec6 wrench;
         wrench << net[n], torque[n] / reach[n];
         const Vec6 goes = stiff.llt().solve(wrench);
-        const bool is_little =
-            !gripped.firm[n] && mass[n] * goes.lpNorm<1>() <= kLittlePush * size[n];
-        shift.push_back(is_little ? Vec3(goes.head<3>()) : none);
-        turn.push_back(is_little ? Vec3(goes.tail<3>() / reach[n]) : none);
+        left[n].shift = goes.head<3>();
+        left[n].turn = goes.tail<3>() / reach[n];
+        left[n].drive = mass[n] * goes.lpNorm<1>();
+    }
+    return left;
+}
+
+void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
+                          const GrippedPieces& gripped, const Drive& now, const Vec3Array& push,
+                          Vec3Array& force) {
+    const Pieces& pieces = gripped.pieces;
+    const std::vector<Vec3> center = centres_of(pieces, matter, masses_of(pieces, matter));
+    std::vector<LeftFree> left = left_free(matter, apparatus, gripped, now, push);
+    for (std::size_t n = 0; n < left.size(); ++n) {
+        if (gripped.firm[n] || left[n].is_driven()) left[n] = {};
     }
     for (std::size_t p = 0; p < push.size(); ++p) {
         const auto n = std::size_t(pieces.particle_piece[p]);
-        force.add(p, -m[p] * (shift[n] + turn[n].cross(arm(p))));
+        const Vec3 arm = matter.particle_position.at(p) - center[n];
+        force.add(p, -matter.particle_mass[p] * (left[n].shift + left[n].turn.cross(arm)));
     }
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `swage check` foretells of stages, and what a run then keeps of that.
+#include <memory>
+
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_write.h"
 #include "tests/app/program.h"
@@ -203,4 +205,79 @@ TEST_CASE("a later stage that another longest side would refuse is told what kee
     CHECK(says(bent("up = \"z\"\n"), keeps));
     CHECK(!says(bent("up = \"z\"\naxis = \"x\"\n"), "keeps it"));
     CHECK(!says(bent(""), "keeps it"));
+}
+
+TEST_CASE("what goes off where grips leave it free is told with the way, and a run stops at once") {
+    const auto bar = [](const std::string& along, const std::string& keys) {
+        auto made = std::make_unique<Bar>("[[stage]]\nmachine = \"guide\"\nframes = 2\n" + keys);
+        fs::create_directory(made->scratch.path() / "machines");
+        put_text(made->scratch.path() / "machines/guide.toml",
+                 "help = \"a guide\"\n[[grip]]\nname = \"guide\"\nalong = \"" + along +
+                     "\"\nfrom = [\"-length\", \"-height\", \"-width\"]\n"
+                     "to = [\"length\", \"-0.4*height\", \"width\"]\n");
+        return made;
+    };
+    const auto pull = [](const std::string& force) {
+        return "[[stage.load]]\non = \"right\"\nforce = " + force + "\n";
+    };
+    const std::string weight = "gravity = 9.81\n", off = "which its grips leave free";
+    const auto slides = bar("yz", weight + pull("[\"-2 N\", 0, 0]"));
+    CHECK(says(told_of(*slides),
+               "1-guide: loads and gravity push the work-piece with up to 2 N "
+               "along the world's -x, which its grips leave free"));
+    const Outcome run = slides->run();
+    INFO(run.err);
+    CHECK(run.code == 6);
+    CHECK(says(run.err, "the work-piece goes off at"));
+    CHECK(says(run.err, "along the world's -x, which its grips leave free"));
+    CHECK(!says(run.err, "halvings"));
+    CHECK(says(told_of(*bar("xz", weight)),
+               "gravity pulls the work-piece with up to 730 mN along "
+               "the world's -y, which its grips leave free"));
+    for (const auto& held : {bar("xyz", weight + pull("[\"2 N\", 0, 0]")), bar("y", weight),
+                             bar("yz", weight + pull("[0, \"1 N\", \"1 N\"]")),
+                             bar("xy", pull("[\"1 N\", \"1 N\", 0]"))}) {
+        CHECK(!says(told_of(*held), "free"));
+        CHECK(held->run().code == 0);
+    }
+    // A turn comes to an end, or not.
+    CHECK(says(told_of(*bar("y", pull("[0, 0, \"1 N\"]"))), "along the world's z, " + off));
+    const std::string couple =
+        "[[stage.load]]\non = \"front\"\nforce = [0, 0, \"-1 N\"]\n"
+        "from = [0, \"-1 cm\", \"-1 cm\"]\nto = [\"10 cm\", \"1 cm\", \"1 cm\"]\n"
+        "[[stage.load]]\non = \"back\"\nforce = [0, 0, \"1 N\"]\n"
+        "from = [\"-10 cm\", \"-1 cm\", \"-1 cm\"]\nto = [0, \"1 cm\", \"1 cm\"]\n";
+    CHECK(says(told_of(*bar("y", couple)),
+               "the loads push the work-piece round the world's y, and its grips leave it free"));
+    CHECK(!says(told_of(*bar("yz", couple)), "free"));
+}
+
+TEST_CASE("what friction does not hold on its rests is told with the way") {
+    const auto told = [](const std::string& force, const std::string& friction,
+                         const std::string& wall = {}) {
+        Bar bar(
+            "[[stage]]\nmachine = \"table\"\nframes = 2\ngravity = 9.81\n[[stage.load]]\n"
+            "on = \"top\"\nforce = " +
+            force + "\n");
+        fs::create_directory(bar.scratch.path() / "machines");
+        put_text(bar.scratch.path() / "machines/table.toml",
+                 "help = \"a table\"\nupright = true\n[[tool]]\nname = \"table\"\nshape = \"box\"\n"
+                 "size = [\"9*length\", \"height\", \"9*length\"]\nat = [0, \"-height\", 0]\n"
+                 "touch = [0, 1, 0]\nfriction = " +
+                     friction + "\n" + wall);
+        return told_of(bar);
+    };
+    // It weighs 0.73 N.
+    const std::string smooth = "loads and gravity push the work-piece along the world's ";
+    CHECK(says(told("[\"1 N\", 0, 0]", "0"), smooth + "x by more than table bears there"));
+    CHECK(says(told("[0, 0, \"-1 N\"]", "0.3"), smooth + "-z by more than table"));
+    CHECK(!says(told("[0, 0, \"-1 N\"]", "2"), smooth));
+    CHECK(!says(told("[0, \"-1 N\", 0]", "0"), smooth));
+    // Something stands in its way, however far.
+    const std::string wall =
+        "[[tool]]\nname = \"wall\"\nshape = \"box\"\n"
+        "size = [\"height\", \"9*height\", \"9*width\"]\n"
+        "at = [\"length\", 0, 0]\nfriction = 0\n";
+    CHECK(!says(told("[\"1 N\", 0, 0]", "0", wall), smooth));
+    CHECK(says(told("[\"-1 N\", 0, 0]", "0", wall), smooth + "-x"));
 }
