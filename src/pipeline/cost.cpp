@@ -84,12 +84,13 @@ double mounted_vertices(const TriMesh& mesh, const SkinSettings& skin, double sp
 
 // Of the body with the shortest stable step. `counted`: or null.
 double steps_per_second(const SceneSpec& scene, const RunCost& cost, const CountedMatter* counted,
-                        const SimSettings& sim) {
+                        const StageSpec& stage) {
     double most = 0;
     for (std::size_t b = 0; b < scene.body.size(); ++b) {
-        most = std::max(most, counted != nullptr ? counted->steps_per_second(b, sim)
-                                                 : lattice_steps_per_second(
-                                                       scene.body[b], cost.body[b].spacing, sim));
+        most = std::max(
+            most, counted != nullptr
+                      ? counted->steps_per_second(b, stage)
+                      : lattice_steps_per_second(scene.body[b], cost.body[b].spacing, stage.sim));
     }
     return most;
 }
@@ -156,8 +157,9 @@ std::string what_time_hangs_on(const SceneSpec& scene) {
 
 // What is known of the first stage alone.
 struct FirstStage {
-    long equilibria = 0;  // 0: not known
-    double flight = 0;    // [s]
+    long equilibria = 0;           // 0: not known
+    double flight = 0;             // [s]
+    std::vector<double> leg = {};  // in motion, where frames are few [s]
 };
 
 // `counted`: or null.
@@ -177,9 +179,10 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     for (const StageSpec& stage : scene.stage) {
         const bool moves = in_motion(stage.sim.solver);
         way = std::max(way, bytes_of_way(stage.machine, stage.frames, moves));
-        if (moves) load.steps_per_second = steps_per_second(scene, cost, counted, stage.sim);
+        if (moves) load.steps_per_second = steps_per_second(scene, cost, counted, stage);
         const bool is_first = &stage == &scene.stage.front();
         load.flight = is_first ? first.flight : 0;
+        load.leg = is_first ? first.leg : std::vector<double>();
         const StageTime time = stage_time(scene, stage, load, is_first ? first.equilibria : 0);
         cost.steps.add(time.steps);
         cost.seconds.add(time.seconds);
@@ -249,11 +252,8 @@ MoldEstimate sum_of(const std::vector<MoldEstimate>& bodies) {
     return sum;
 }
 
-// Of the first stage, as straight as the spacing that is asked for has it.
 long equilibria_of(const StageSpec& first, const Machine& machine, const CountedMatter& counted,
-                   double spacing) {
-    const Legs legs = stage_legs(first, machine, std::min(first.frames, kSampledFrames), spacing);
-    if (in_motion(first.sim.solver)) return 0;
+                   double spacing, const Legs& legs) {
     const std::vector<Drive> drives = stage_drives(first, machine, legs.leg, 1);
     const auto along = [&](const Aggregate& matter) {
         return std::max<long>(first.frames,
@@ -297,13 +297,23 @@ void count(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& 
         if (!note.empty()) cost.warning.bodies.push_back(stage.name + ": " + note);
     }
     const double flight =
-        start_flight(first, machine, bodies, 1 / steps_per_second(scene, cost, &made, first.sim));
+        start_flight(first, machine, bodies, 1 / steps_per_second(scene, cost, &made, first));
     if (flight > kWorthTelling * first.duration) {
         cost.note.push_back(fmt::format("{}: free flight for the first {} takes next to no steps",
                                         first.name, rounded_text(flight, Quantity::time, 3)));
     }
-    add_up(cost, scene, input, options, &made,
-           {equilibria_of(first, machine, made, cost.work_piece().spacing), flight});
+    // As straight as the spacing that is asked for has it.
+    const double spacing = cost.work_piece().spacing;
+    const Legs legs = stage_legs(first, machine, std::min(first.frames, kSampledFrames), spacing);
+    FirstStage of_first{.flight = flight};
+    if (!in_motion(first.sim.solver)) {
+        of_first.equilibria = equilibria_of(first, machine, made, spacing, legs);
+    } else if (first.frames <= kSampledFrames) {
+        for (const Leg& leg : legs.leg) {
+            of_first.leg.push_back((leg.end - leg.begin) * first.duration);
+        }
+    }
+    add_up(cost, scene, input, options, &made, of_first);
 }
 
 }  // namespace

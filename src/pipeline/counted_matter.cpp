@@ -34,8 +34,9 @@ bool CountedMatter::is_whole() const {
     return std::all_of(coarser.begin(), coarser.end(), [](double c) { return c == 1; });
 }
 
-double CountedMatter::steps_per_second(std::size_t body, const SimSettings& sim) const {
-    return explicit_steps_per_second(matter[body], sim) * coarser[body];
+double CountedMatter::steps_per_second(std::size_t body, const StageSpec& stage) const {
+    const bool is_cut = !stage.machine.blade.empty();
+    return explicit_steps_per_second(matter[body], stage.sim, is_cut) * coarser[body];
 }
 
 std::vector<NamedMatter> CountedMatter::named(const SceneSpec& scene,

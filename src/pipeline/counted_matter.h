@@ -20,8 +20,9 @@ struct CountedMatter {
     std::vector<Aggregate> matter;  // of each body, where it is at its start
     std::vector<double> coarser;    // its spacing, over the one that is asked for: 1 or more
 
-    bool is_whole() const;                                                    // none is coarser
-    double steps_per_second(std::size_t body, const SimSettings& sim) const;  // at what is asked
+    bool is_whole() const;  // none is coarser
+    // At what is asked.
+    double steps_per_second(std::size_t body, const StageSpec& stage) const;
     std::vector<NamedMatter> named(const SceneSpec& scene,
                                    const std::vector<InputMesh>& input) const;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/start_flight.h"
 
+#include <algorithm>
+#include <cmath>
 #include <list>
 
 #include "sim/free_flight.h"
@@ -10,6 +12,7 @@ namespace swage {
 namespace {
 
 constexpr int kMostLooks = 200;  // each goes at least half of the way that is left
+constexpr double kRounding = 1e-9;
 
 }  // namespace
 
@@ -31,10 +34,18 @@ double start_flight(const StageSpec& stage, const Machine& machine,
     const Drive from = drive_at(machine, 0, stage.duration);
     Drive to = from, now = from;
     to.time = stage.duration;
+    // A run looks anew at each frame, and flies on where that is worth it from there.
+    const double frame = stage.duration / stage.frames;
+    const auto flown_until = [&](double begin, double free) {
+        double end = (std::floor(begin / frame * (1 + kRounding)) + 1) * frame;
+        const double most = begin + free;
+        while (end < most && most - end > kWorthFlying * step) end += frame;
+        return std::min({end, most, to.time});
+    };
     for (int n = 0; n < kMostLooks && now.time < to.time; ++n) {
         const double free = free_time(flying, machine.apparatus, from, to, now, sim.gravity);
         if (!(free > kWorthFlying * step)) break;
-        const double time = std::min(free, to.time - now.time);
+        const double time = flown_until(now.time, free) - now.time;
         now.time += time;
         auto at = position.begin();
         for (Flyer& body : flying) {

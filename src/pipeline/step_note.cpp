@@ -46,7 +46,7 @@ std::string step_note(const SceneSpec& scene, const CountedMatter& counted) {
         if (!follows_all_motion(stage.sim.solver)) continue;
         std::vector<double> steps;
         for (std::size_t b = 0; b < counted.matter.size(); ++b) {
-            steps.push_back(counted.steps_per_second(b, stage.sim));
+            steps.push_back(counted.steps_per_second(b, stage));
         }
         const std::vector<std::string> name = body_names(scene);
         const auto most = std::max_element(steps.begin(), steps.end());

@@ -185,11 +185,27 @@ StageTime relaxed(const SceneSpec& scene, const StageSpec& stage, const WorkLoad
     return {steps, {steps.least * each * kMachine.least, steps.most * each * kMachine.most}};
 }
 
+// Whole ones in each leg, and one for a frame of free flight.
+double elastic_steps(const StageSpec& stage, const WorkLoad& load, double per_second) {
+    constexpr double kRounding = 1e-9;
+    const auto steps_in = [&](double time) {
+        return std::max(1.0, std::ceil(time * per_second * (1 - kRounding)));
+    };
+    double all = stage.frames * steps_in(stage.duration / stage.frames);
+    if (!load.leg.empty()) {
+        all = 0;
+        for (double time : load.leg) all += steps_in(time);
+    }
+    const double flown = load.flight / stage.duration;
+    return flown * stage.frames + (1 - flown) * all;
+}
+
 StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load) {
     const Strikes by = strikes(scene, stage);
     const bool is_driven = !stage.machine.stands() || !stage.machine.load.empty();
-    const double elastic =
-        std::max(double(stage.frames), (stage.duration - load.flight) * load.steps_per_second);
+    const bool by_euler = stage.sim.solver == Solver::euler;
+    const double elastic = elastic_steps(
+        stage, load, load.steps_per_second * (by_euler ? more_steps(scene, Solver::euler) : 1));
     CostRange steps = {elastic, elastic};
     if (scene.yields()) {
         const double driven = is_driven ? kFlattenedByMachines : 1;
@@ -197,8 +213,6 @@ StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& 
     }
     if (stage.sim.solver == Solver::energy_stepped) {
         steps = {steps.least * kEnergySteps.least, steps.most * kEnergySteps.most};
-    } else if (stage.sim.solver == Solver::euler) {
-        steps = steps.times(more_steps(scene, stage.sim.solver));
     }
     double each =
         load.particles * (kCells + (scene.damps() ? kDashpots : 0) + (scene.yields() ? kFlow : 0));

@@ -5,6 +5,8 @@
 // most, and nothing of the machine is measured, so that the same scene is told the same.
 #pragma once
 
+#include <vector>
+
 #include "scene/spec.h"
 
 namespace swage {
@@ -26,6 +28,7 @@ struct WorkLoad {
     double thickness = 1;         // of it, or of its thin parts, in cells
     double steps_per_second = 0;  // explicit ones, of the body that needs the most
     double flight = 0;            // of a stage that they take no steps for, nothing being near [s]
+    std::vector<double> leg{};    // of a stage, of which each takes whole steps [s]; empty: frames
 };
 
 struct StageTime {

@@ -379,8 +379,9 @@ void Simulation::save(ByteWriter& out) const { out(*rooms_); }
 
 void Simulation::load(ByteReader& in) { in(*rooms_); }
 
-double explicit_steps_per_second(const Aggregate& matter, const SimSettings& settings) {
-    return 1 / explicit_step(matter, settings);
+double explicit_steps_per_second(const Aggregate& matter, const SimSettings& settings,
+                                 bool is_cut) {
+    return 1 / explicit_step(matter, settings, is_cut);
 }
 
 long equilibria_along(const Aggregate& matter, const Apparatus& apparatus,

@@ -110,8 +110,10 @@ class Simulation {
     std::unique_ptr<Rooms> rooms_;
 };
 
-// About how many explicit steps a second of machine time takes; for estimates.
-double explicit_steps_per_second(const Aggregate& matter, const SimSettings& settings);
+// About how many explicit steps a second of machine time takes; for estimates. Each leg takes whole
+// ones. `is_cut`: by a blade.
+double explicit_steps_per_second(const Aggregate& matter, const SimSettings& settings,
+                                 bool is_cut = false);
 // How many equilibria a quasi-static stage takes along these drives where none has to be halved.
 long equilibria_along(const Aggregate& matter, const Apparatus& apparatus,
                       const SimSettings& settings, const std::vector<Drive>& drives);

@@ -84,9 +84,9 @@ double move_block(const Movers& m, std::size_t begin, std::size_t end, double ki
 
 }  // namespace
 
-double explicit_step(const Aggregate& matter, const SimSettings& settings) {
+double explicit_step(const Aggregate& matter, const SimSettings& settings, bool is_cut) {
     const LatticeForces lattice(matter);
-    const SwingBound swings(matter, matter.breaks());
+    const SwingBound swings(matter, matter.breaks() || is_cut);
     return stable_step(matter, settings.step_safety, lattice, swings,
                        InternalDamping(matter, std::sqrt(swings.squared(matter, lattice))));
 }

@@ -21,7 +21,8 @@ namespace swage {
 // the lattice's highest angular frequency and zeta its damping ratio there; w^2 is twice what
 // sim/fastest_swing.h finds, no more than max(bound / m) of stiffness_bound(), and of what can part
 // no less than that of its springs; all branches of the damping are taken as springs beside it.
-double explicit_step(const Aggregate& matter, const SimSettings& settings);
+// `is_cut`: a blade may part it.
+double explicit_step(const Aggregate& matter, const SimSettings& settings, bool is_cut = false);
 
 class MovingBody {
   public:
