@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kThinnest = 0.02;  // mean thickness, in cells
 constexpr double kThin = 0.25;
+constexpr double kOffCentre = 1e-3;  // [cells]
 
 // Of what is only about so long.
 std::string about(double length, int digits) {
@@ -118,8 +119,8 @@ double filled_cells(const std::vector<CellLayer>& layers) {
 
 // Everything about the result that a user would not expect.
 void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
-                   const std::vector<CellLayer>& layers, double lost, const Aggregate& matter,
-                   std::vector<std::string>& findings) {
+                   const std::vector<CellLayer>& layers, double lost, double off_centre,
+                   const Aggregate& matter, std::vector<std::string>& findings) {
     double surplus = 0, deficit = 0;
     for (const CellLayer& layer : layers) {
         surplus += layer.surplus, deficit += layer.deficit;
@@ -136,6 +137,12 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     if (lost * cell > 1e-6 * volume) {
         findings.push_back(fmt::format("{} is lost in pieces too small for cells of {}",
                                        volume_text(lost * cell), length_text(frame.spacing)));
+    }
+    if (off_centre > kOffCentre) {
+        findings.push_back(fmt::format(
+            "the centre of mass lies {} from where the mesh has it: nearly all the mass lies on "
+            "the outside of cells of {}; a smaller spacing avoids this",
+            about(off_centre * frame.spacing, 2), length_text(frame.spacing)));
     }
     const double thickness = 2 * volume / surface_area(mesh);
     if (thickness < kThin * frame.spacing) {
@@ -205,9 +212,9 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     place_insets(insets, layers, frame, matter, findings, masses != nullptr ? &mesh : nullptr);
     if (masses != nullptr) weigh_materials(*masses, matter);
     share_out(layers, frame, matter);
-    match_moments(matter);
+    const double off_centre = match_moments(matter);
     matter.surface = carry_patches(layers, matter.lattice, matter.cell_fill);
-    tell_findings(mesh, frame, volume, layers, lost, matter, findings);
+    tell_findings(mesh, frame, volume, layers, lost, off_centre, matter, findings);
     return matter;
 }
 

@@ -10,6 +10,12 @@
 // second degree in the place. Its ten coefficients are found by Newton's method on the clamped
 // masses; Tikhonov's regularisation, iterated, leaves out what no change can reach: of a sheet of
 // one cell all particles lie equally far from its middle.
+//
+// Clamped, that may find no masses which keep the centre where there are some: of tetrahedra, and
+// of what has few cells. There the same is asked as a strictly convex problem, with mass and centre
+// as conditions and second moments at a price. Its dual is concave and piecewise quadratic in the
+// ten coefficients, and Newton's method with steps that gain climbs it from anywhere. L. Qi & J.
+// Sun, A nonsmooth version of Newton's method, Math. Programming 58, 1993.
 #include "mold/moments.h"
 
 #include <Eigen/Dense>
@@ -28,6 +34,13 @@ constexpr double kRegular = 1e-3;  // of a body of mass 1 that reaches from -1 t
 constexpr int kRounds = 12;
 constexpr double kClose = 1e-10;
 constexpr double kLeastMass = 0.6, kMostMass = 2.5;  // of what a particle had
+constexpr double kCentreMet = 1e-6;                  // [cells]
+constexpr int kWidenings = 6;                        // of these bounds, twice each time
+constexpr int kClimbs = 60, kHalvings = 40;
+constexpr std::array kMissing = {1e-3, 1e-4, 1e-5};  // inverse prices of second moments
+constexpr double kNear = 1e-8;                       // of the dual's slope, that is a solution
+constexpr double kFirm = 1e-9;    // of the dual's curvature where hardly a mass may change
+constexpr double kOfGain = 1e-4;  // of what a step promises, that is enough
 
 Moments monomials(const Vec3& x) {
     Moments m;
@@ -160,57 +173,164 @@ Moments correction(const MomentMatrix& slope, const Moments& missing) {
     return q;
 }
 
-}  // namespace
-
-void match_moments(Aggregate& matter) {
-    const double spacing = matter.lattice.spacing;
-
+// Between these a particle's mass stays [kg].
+struct Bounds {
     std::vector<double> least, most;
-    for (double m : matter.particle_mass) {
-        least.push_back(kLeastMass * m), most.push_back(kMostMass * m);
-    }
-    carry_to_centroids(least, matter);
-    sharpen(least, matter);
 
-    const std::size_t count = matter.particle_count();
-    Box box;
-    for (std::size_t p = 0; p < count; ++p) box.grow(matter.particle_position.at(p));
-    const Scale scale{box.center(), 0.5 * (box.high - box.low)};
-    const auto at = [&](std::size_t p) { return monomials(scale(matter.particle_position.at(p))); };
+    // `wide`: 1 or more.
+    static Bounds about(const std::vector<double>& mass, double wide) {
+        Bounds bounds;
+        for (double m : mass) {
+            bounds.least.push_back(kLeastMass / wide * m);
+            bounds.most.push_back(kMostMass * wide * m);
+        }
+        return bounds;
+    }
+};
+
+// What the masses of a body are changed by.
+struct Change {
+    Aggregate& matter;
+    const Bounds& bounds;
+    Scale scale;
+    Moments wanted;
+
+    Moments at(std::size_t p) const { return monomials(scale(matter.particle_position.at(p))); }
+    double mass_of(std::size_t p, double grows) const {
+        return std::clamp(matter.particle_mass[p] * (1 + grows), bounds.least[p], bounds.most[p]);
+    }
+    bool is_free(std::size_t p, double mass) const {
+        return mass > bounds.least[p] && mass < bounds.most[p];
+    }
+    void apply(const Moments& q) {
+        double sum = 0;
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            sum += matter.particle_mass[p] = mass_of(p, q.dot(at(p)));
+        }
+        for (double& m : matter.particle_mass) m *= wanted[0] / sum;
+    }
+};
+
+Moments least_change(const Change& change) {
+    const double mass = change.wanted[0];
+    Moments q = Moments::Zero(), best = q;
+    double least_left = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < kRounds; ++round) {
+        Moments have = Moments::Zero();
+        MomentMatrix slope = MomentMatrix::Zero();
+        for (std::size_t p = 0; p < change.matter.particle_count(); ++p) {
+            const Moments m = change.at(p);
+            const double own = change.mass_of(p, q.dot(m));
+            have += own * m;
+            if (change.is_free(p, own)) {
+                slope += change.matter.particle_mass[p] * m * m.transpose();
+            }
+        }
+        const double left = (change.wanted - have).norm() / mass;
+        if (left < least_left) best = q, least_left = left;
+        if (left < kClose) break;
+        q += correction(slope / mass, (change.wanted - have) / mass);
+    }
+    return best;
+}
+
+// The dual at some coefficients.
+struct Dual {
+    double value = 0;
+    Moments slope = Moments::Zero();
+    MomentMatrix curvature = MomentMatrix::Zero();  // its negative
+};
+
+Dual dual_at(const Change& change, double missing, const Moments& q) {
+    const double mass = change.wanted[0];
+    Dual dual;
+    for (std::size_t p = 0; p < change.matter.particle_count(); ++p) {
+        const Moments m = change.at(p);
+        const double grows = q.dot(m), was = change.matter.particle_mass[p],
+                     own = change.mass_of(p, grows), more = own - was;
+        dual.value -= own * grows - 0.5 * more * more / was;
+        dual.slope -= own * m;
+        if (change.is_free(p, own)) dual.curvature += was * m * m.transpose();
+    }
+    dual.value = (dual.value + change.wanted.dot(q)) / mass;
+    dual.slope = (dual.slope + change.wanted) / mass;
+    dual.curvature /= mass;
+    dual.value -= 0.5 * missing * q.tail<6>().squaredNorm();
+    dual.slope.tail<6>() -= missing * q.tail<6>();
+    dual.curvature.diagonal().tail<6>().array() += missing;
+    dual.curvature.diagonal().array() += kFirm;
+    return dual;
+}
+
+// Where there are masses within the bounds that keep the centre these are found; their second
+// moments as near as prices let them come that climb as the first does.
+Moments climbed(const Change& change) {
+    Moments best = Moments::Zero();
+    for (double missing : kMissing) {
+        Moments q = best;
+        Dual here = dual_at(change, missing, q);
+        for (int climb = 0; climb < kClimbs && here.slope.norm() > kClose; ++climb) {
+            const Moments way = here.curvature.ldlt().solve(here.slope);
+            const double gain = way.dot(here.slope);
+            double part = 1;
+            for (int n = 0; n < kHalvings; ++n, part /= 2) {
+                const Dual there = dual_at(change, missing, q + part * way);
+                const bool gains = there.value >= here.value + kOfGain * part * gain;
+                if (!gains && !(there.slope.norm() < 0.5 * here.slope.norm())) continue;
+                q += part * way, here = there;
+                break;
+            }
+        }
+        if (!(here.slope.norm() < kNear)) break;
+        best = q;
+    }
+    return best;
+}
+
+Moments wanted_moments(const Aggregate& matter, const Scale& scale) {
+    const double spacing = matter.lattice.spacing;
     Moments wanted = Moments::Zero();
     for_each_part(matter, [&](const CellRun& run, int n, const Part& part) {
         const Vec3 middle = matter.particle_position.at(run.row[0] + n).array() + 0.5 * spacing;
         wanted += part.mass * part_moments(middle, spacing, part.centroid, scale);
     });
-    const double mass = wanted[0];
-    Moments q = Moments::Zero();
-    const auto mass_of = [&](std::size_t p, const Moments& m) {
-        return std::clamp(matter.particle_mass[p] * (1 + q.dot(m)), least[p], most[p]);
-    };
-    Moments best = q;
-    double least_left = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < kRounds; ++round) {
-        Moments have = Moments::Zero();
-        MomentMatrix slope = MomentMatrix::Zero();
-        for (std::size_t p = 0; p < count; ++p) {
-            const Moments m = at(p);
-            const double own = mass_of(p, m);
-            have += own * m;
-            if (own > least[p] && own < most[p]) {
-                slope += matter.particle_mass[p] * m * m.transpose();
-            }
+    return wanted;
+}
+
+}  // namespace
+
+double match_moments(Aggregate& matter) {
+    const std::vector<double> shared = matter.particle_mass;
+    Box box;
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        box.grow(matter.particle_position.at(p));
+    }
+    const Scale scale{box.center(), 0.5 * (box.high - box.low)};
+    const Moments wanted = wanted_moments(matter, scale);
+    const auto missed = [&] {  // [cells]
+        Vec3 first = Vec3::Zero();
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            first += matter.particle_mass[p] * scale(matter.particle_position.at(p));
         }
-        const double left = (wanted - have).norm() / mass;
-        if (left < least_left) best = q, least_left = left;
-        if (left < kClose) break;
-        q += correction(slope / mass, (wanted - have) / mass);
+        const Vec3 by = (first - wanted.segment<3>(1)) / wanted[0];
+        return by.cwiseProduct(scale.half).norm() / matter.lattice.spacing;
+    };
+    const auto start = [&](const Bounds& bounds) {
+        matter.particle_mass = shared;
+        carry_to_centroids(bounds.least, matter);
+        sharpen(bounds.least, matter);
+        return Change{matter, bounds, scale, wanted};
+    };
+    Bounds bounds = Bounds::about(shared, 1);
+    Change change = start(bounds);
+    change.apply(least_change(change));
+    double wide = 1;
+    for (int n = 0; n < kWidenings && !(missed() < kCentreMet); ++n, wide *= 2) {
+        bounds = Bounds::about(shared, wide);
+        Change again = start(bounds);
+        again.apply(climbed(again));
     }
-    q = best;
-    double sum = 0;
-    for (std::size_t p = 0; p < count; ++p) {
-        sum += matter.particle_mass[p] = mass_of(p, at(p));
-    }
-    for (double& m : matter.particle_mass) m *= mass / sum;
+    return missed();
 }
 
 }  // namespace swage
