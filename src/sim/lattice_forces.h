@@ -84,6 +84,9 @@ class LatticeForces {
     Committed snap(Aggregate& matter);
 
     double elastic_energy(const Aggregate& matter);  // [J]
+    // By which springs have softened at the strains that were last found, and the energy is less,
+    // since what is committed [J].
+    double trial_loss() const { return loose_.trial_loss(); }
 
     // What the cells carry, where forces are theirs alone; else null.
     const std::vector<float>* cells_alone() const { return loose_.empty() ? carried() : nullptr; }

@@ -56,9 +56,11 @@ struct BodyOutcome {
         return plastic_work + fracture_work + friction_work + damped_work + drag_work +
                by_contact.damped + by_contact.friction;
     }
-    // Fracture that gives energy is no account of it.
-    double lost_since(const BodyOutcome& then) const {  // [J]
-        return lost() - then.lost() + std::max(0.0, then.fracture_work - fracture_work);
+    // Fracture that gives energy is no account of it. `booked_late`: what of it is not booked yet,
+    // less what was booked of earlier steps [J].
+    double lost_since(const BodyOutcome& then, double booked_late = 0) const {  // [J]
+        const double fracture = fracture_work - then.fracture_work + booked_late;
+        return lost() - then.lost() + booked_late + std::max(0.0, -fracture);
     }
 };
 

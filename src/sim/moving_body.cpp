@@ -274,7 +274,11 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
     if (lattice_.saw_crushed() || inside_out_ > 0) {
         outcome.damped_work += calm_crushed(matter_, portable::exp(-kCalm * step / step_));
     }
-    if (remember(now, step, outcome)) find_forces(now, 0, outcome);
+    loss_to_book_ = 0;
+    if (remember(now, step, outcome)) {
+        find_forces(now, 0, outcome);
+        loss_to_book_ = lattice_.trial_loss();
+    }
     if (implicit_) {
         outcome.friction_work += contacts_.commit_implicit_step(matter_, now);
     } else {
@@ -385,6 +389,7 @@ void MovingBody::save(State& state) const {
     state.load = load_;
     state.gone = gone_;
     state.turned = turned_;
+    state.loss_to_book = loss_to_book_;
 }
 
 void MovingBody::restore(const State& state, BodyOutcome& outcome) {
@@ -406,6 +411,7 @@ void MovingBody::restore(const State& state, BodyOutcome& outcome) {
     }
     load_ = state.load;
     turned_ = state.turned;
+    loss_to_book_ = state.loss_to_book;
     gone_ = state.gone;  // as long ago as the candidates that it goes back to
 }
 

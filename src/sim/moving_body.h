@@ -80,6 +80,8 @@ class MovingBody {
     // step before and after: what the forces' work by the trapezoid rule adds up to exactly.
     Stored stored(const Drive& now, double step);
     double kinetic_energy(double step) const;  // alone [J]
+    // That new springs have lost already and the next step books, after one in which cells cracked.
+    double loss_to_book() const { return loss_to_book_; }  // [J]
     // How wrong a step of this length [s] may leave its energy, for places are rounded: to what
     // forces then do, and as sim/free_flight.h has it [J].
     double round_off(double step) const;
@@ -133,7 +135,7 @@ class MovingBody {
         std::optional<InternalDamping> damping;  // none, nor memory: no copy is kept
         std::vector<BranchMemory> memory;
         std::vector<PartSum> load;
-        double gone, turned;
+        double gone, turned, loss_to_book;
     };
     void save(State& state) const;
     // NOTE: but for energy-stepped ones, which are often taken back, no copy is kept of what the
@@ -145,7 +147,7 @@ class MovingBody {
     void visit(Io& io) {  // what steps change
         lattice_.visit(io, matter_);
         io(damping_, contacts_, pushes_, present_step_, flowed_, drag_, force_, load_, turned_,
-           gone_, implicit_, branch_energy_, block_energy_, gravity_, inside_out_);
+           gone_, implicit_, branch_energy_, block_energy_, gravity_, inside_out_, loss_to_book_);
     }
 
   private:
@@ -180,6 +182,7 @@ class MovingBody {
     double branch_energy_ = -1, block_energy_ = 0;
     Vec3 gravity_ = Vec3::Zero();
     int inside_out_ = 0;
+    double loss_to_book_ = 0;
 };
 
 }  // namespace swage
