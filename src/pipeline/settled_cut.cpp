@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/crumbs.h"
 #include "sim/sever.h"
 #include "skin/broken_skin.h"
 #include "skin/skin_pieces.h"
@@ -50,18 +51,27 @@ void warn_of(const CutResult& cut, int frame, WarningBook& warnings) {
     }
 }
 
-// One that is made anew, or torn along a path that bends, is parted as the matter is; rubble has
-// pieces without a skin.
-bool is_cut_along(const WorkPiece& piece) { return !piece.is_torn && !is_broken(piece.matter); }
+// Of the pieces that a cut would make, which are to stay with what they would be cut from. A skin
+// that is made anew, or torn along a path that bends, is parted as the matter is; rubble has pieces
+// without a skin.
+std::vector<char> pieces_to_keep(const WorkPiece& piece, const Aggregate& ahead) {
+    const Pieces pieces = find_pieces(ahead);
+    std::vector<char> kept = find_crumbs(pieces);
+    if (piece.is_torn || is_broken(piece.matter)) return kept;
+    const std::vector<SkinShare> share = skin_shares(piece.skin, piece.mount, ahead);
+    const std::vector<char> unturned = find_unturned(pieces, ahead);
+    for (std::size_t n = 0; n < kept.size(); ++n) {
+        kept[n] = share[n] == SkinShare::none ||
+                  (kept[n] && (share[n] == SkinShare::joined || unturned[n]));
+    }
+    return kept;
+}
 
 }  // namespace
 
 bool keep_what_is_not_shown(std::size_t body, Simulation& simulation, const WorkPiece& piece) {
-    if (!is_cut_along(piece)) return true;
     const Aggregate ahead = simulation.planned(body);
-    const std::vector<char> bare = pieces_without_skin(piece.skin, piece.mount, ahead);
-    if (std::ranges::none_of(bare, [](char one) { return one != 0; })) return true;
-    return simulation.keep(body, ahead, bare);
+    return simulation.keep(body, ahead, pieces_to_keep(piece, ahead));
 }
 
 bool settle_cut(const Machine& machine, std::span<const Drive> way, int steps, std::size_t body,

@@ -14,12 +14,13 @@ namespace swage {
 
 // Plans the cuts of the coming frames, of `steps` drives each, in the simulation's body of that
 // number, and cuts its skin. What the skin does not part, as its piece is less than a cell
-// (skin/cut_mesh.h), stays in the matter with what it would be cut from. False where nothing else
-// would be cut: then the skin is as it was.
+// (skin/cut_mesh.h), stays in the matter with what it would be cut from; so do crumbs, but for
+// those that the skin parts and that can carry it as they turn. False where nothing else would be
+// cut: then the skin is as it was.
 bool settle_cut(const Machine& machine, std::span<const Drive> way, int steps, std::size_t body,
                 Simulation& simulation, WorkPiece& piece, int frame, WarningBook& warnings);
 
-// Of a skin that was cut so before, of cuts that were planned since: what it does not part stays.
+// Of a skin that was cut so before, of cuts that were planned since: the same.
 // False where nothing else would be cut.
 bool keep_what_is_not_shown(std::size_t body, Simulation& simulation, const WorkPiece& piece);
 

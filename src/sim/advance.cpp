@@ -256,7 +256,6 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
         sever(ahead, at.plan.back());
         name_blades(at.plan.back(), ahead, rooms_->apparatus, way);
     }
-    keep_crumbs(ahead, at.plan);
 }
 
 Aggregate Simulation::planned(std::size_t body) const {

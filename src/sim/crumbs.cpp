@@ -11,8 +11,9 @@ namespace {
 
 constexpr int kCrumb = 8;  // a piece of fewer particles is less than one cell
 
-// Of each piece, whether it is less than a cell.
-std::vector<char> crumbs_of(const Pieces& pieces) {
+}  // namespace
+
+std::vector<char> find_crumbs(const Pieces& pieces) {
     std::vector<int> size(pieces.count, 0);
     for (int piece : pieces.particle_piece) ++size[piece];
     std::vector<char> crumb;
@@ -20,17 +21,31 @@ std::vector<char> crumbs_of(const Pieces& pieces) {
     return crumb;
 }
 
-}  // namespace
-
-std::ptrdiff_t particles_in_crumbs(const Pieces& pieces) {
-    const std::vector<char> crumb = crumbs_of(pieces);
-    return std::count_if(pieces.particle_piece.begin(), pieces.particle_piece.end(),
-                         [&](int piece) { return crumb[piece] != 0; });
+std::vector<char> find_unturned(const Pieces& pieces, const Aggregate& matter) {
+    struct Row {
+        std::vector<Vec3> end;
+        bool is_straight = true;
+    };
+    std::vector<Row> row(pieces.count);
+    const double a = matter.lattice.spacing;
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        Row& own = row[pieces.particle_piece[p]];
+        const Vec3 at = matter.particle_reference.at(p);
+        if (own.end.size() < 2) {
+            own.end.push_back(at);
+        } else if ((own.end[1] - own.end[0]).cross(at - own.end[0]).norm() > 1e-6 * a * a) {
+            own.is_straight = false;
+        }
+    }
+    std::vector<char> unturned;
+    for (const Row& own : row) unturned.push_back(own.is_straight);
+    return unturned;
 }
 
-void keep_crumbs(const Aggregate& cut, std::deque<std::vector<SeverEvent>>& plan) {
-    const Pieces pieces = find_pieces(cut);
-    keep_pieces(pieces, crumbs_of(pieces), plan);
+std::ptrdiff_t particles_in_crumbs(const Pieces& pieces) {
+    const std::vector<char> crumb = find_crumbs(pieces);
+    return std::count_if(pieces.particle_piece.begin(), pieces.particle_piece.end(),
+                         [&](int piece) { return crumb[piece] != 0; });
 }
 
 void keep_pieces(const Pieces& pieces, const std::vector<char>& crumb,

@@ -39,14 +39,31 @@ std::vector<int> skin_pieces(const TriMesh& skin, const Mount& mount, const Aggr
     return of_triangle;
 }
 
-std::vector<char> pieces_without_skin(const TriMesh& skin, const Mount& mount,
-                                      const Aggregate& matter) {
+std::vector<SkinShare> skin_shares(const TriMesh& skin, const Mount& mount,
+                                   const Aggregate& matter) {
     const PieceMap map(matter);
-    std::vector<char> bare(static_cast<std::size_t>(map.pieces().count), 1);
-    for (const Corners& corners : skin.triangle) {
-        for (const int v : corners) bare[map.piece_of(mount.place(v))] = 0;
-    }
-    return bare;
+    const Components parts = surface_components(skin);
+    constexpr int kNone = -1, kSeveral = -2;
+    std::vector<int> piece_of_part(static_cast<std::size_t>(parts.count), kNone);
+    std::vector<int> of_vertex(skin.position.size(), kNone);
+    const auto for_each_use = [&](const auto& visit) {
+        for (std::size_t t = 0; t < skin.triangle.size(); ++t) {
+            for (const int v : skin.triangle[t]) {
+                visit(piece_of_part[parts.triangle_component[t]], of_vertex[v], v);
+            }
+        }
+    };
+    for_each_use([&](int& of_part, int& piece, int v) {
+        if (piece == kNone) piece = map.piece_of(mount.place(v));
+        if (of_part == kNone) of_part = piece;
+        if (of_part != piece) of_part = kSeveral;
+    });
+    std::vector<SkinShare> share(static_cast<std::size_t>(map.pieces().count), SkinShare::none);
+    for_each_use([&](int of_part, int piece, int) {
+        if (share[piece] == SkinShare::none) share[piece] = SkinShare::own;
+        if (of_part == kSeveral) share[piece] = SkinShare::joined;
+    });
+    return share;
 }
 
 }  // namespace swage

@@ -14,8 +14,13 @@ namespace swage {
 // a cell, are one, and those without a triangle are left out.
 std::vector<int> skin_pieces(const TriMesh& skin, const Mount& mount, const Aggregate& matter);
 
-// Of each of its pieces, as find_pieces() has them, whether it has none of the skin.
-std::vector<char> pieces_without_skin(const TriMesh& skin, const Mount& mount,
-                                      const Aggregate& matter);
+enum class SkinShare : char {
+    none,
+    joined,  // a connected part of it is another piece's too
+    own
+};
+// What each of its pieces, as find_pieces() has them, has of the skin.
+std::vector<SkinShare> skin_shares(const TriMesh& skin, const Mount& mount,
+                                   const Aggregate& matter);
 
 }  // namespace swage

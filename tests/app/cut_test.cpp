@@ -344,3 +344,49 @@ TEST_CASE("a blade that grazes takes no layer of matter that the skin would not 
         }
     }
 }
+
+TEST_CASE("a blade near an end parts skin and matter alike, or neither") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "end.toml";
+    run_swage({"make", "bar", "--out", "bar.obj"}, scratch.path());
+    struct Case {
+        std::string mesh;
+        int across;
+        std::string place;
+        int pieces;
+    };
+    // Half a cell of the bar is a twentieth of it, in four particles; the tip of the calf less than
+    // a hundredth.
+    const std::vector<Case> cases = {{"bar.obj", 1, "0.46", 2},
+                                     {SWAGE_SOURCE_DIR "/assets/meshes/calf.obj", 3, "0.47", 1}};
+    for (const std::string kind : {"mount", "boundary"}) {
+        for (const Case& one : cases) {
+            CAPTURE(kind, one.mesh);
+            const fs::path out = scratch.path() / fmt::format("{}-{}", kind, one.across);
+            put_text(scene, fmt::format("[mesh]\nfile = \"{}\"\n[material]\nname = \"rubber\"\n"
+                                        "[mold]\nacross = {}\n[skin]\nkind = \"{}\"\n"
+                                        "[[stage]]\nmachine = \"cut\"\ngrip_length = 0.01\n"
+                                        "place = {}\nframes = 3\n",
+                                        one.mesh, one.across, kind, one.place));
+            const Outcome outcome =
+                run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
+            INFO(outcome.err);
+            REQUIRE(outcome.code == 0);
+            const Json stage = parse_json(bytes_of(out / "run.json")).at("stages").back();
+            const bool parts = one.pieces > 1;
+            CHECK(stage["pieces"] == one.pieces);
+            CHECK((stage["severed"] > 0) == parts);
+            const auto tells = [&](const char* words) {
+                return outcome.err.find(words) != std::string::npos;
+            };
+            CHECK(tells("the blade went into matter but severed nothing") == !parts);
+            CHECK(tells("the blade left crumbs of less than one cell") == parts);
+            CHECK_FALSE(tells("the blade met no matter"));
+            const swage::TriMesh mesh = swage::read_mesh(out / "meshes/1-cut.obj");
+            const bool shows_cut = std::ranges::any_of(
+                mesh.material, [](const auto& look) { return look.name == swage::kCutMaterial; });
+            CHECK(shows_cut == parts);
+            CHECK(mesh.part_name.size() == (parts ? 2 : 0));
+        }
+    }
+}

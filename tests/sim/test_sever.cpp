@@ -2,6 +2,7 @@
 #include <random>
 
 #include "sim/advance.h"
+#include "sim/crumbs.h"
 #include "sim/lattice_forces.h"
 #include "sim/sever.h"
 #include "tests/catch.h"
@@ -252,9 +253,34 @@ TEST_CASE("a crumb between two cuts stays with one side and does not join them")
     Simulation simulation(m, apparatus, settings);
     const std::vector<Drive> way = {drive(0.5), drive(-0.5)};
     simulation.plan_cuts(0, way, 1);
+    const Aggregate planned = simulation.planned(0);
+    REQUIRE(simulation.keep(0, planned, find_crumbs(find_pieces(planned))));
     const FrameReport r = simulation.advance(way[0], way[1]);
     CHECK(r.severed > 0);
     CHECK(r.pieces == 2);
+}
+
+TEST_CASE("a crumb can carry a skin once its particles do not lie in a row") {
+    // Of the corner of a block: one particle, four and a layer of six; then a row.
+    Aggregate m = make_block(5, 2, 1, 0.1, Material{});
+    const Vec3 corner = m.particle_position.at(0);
+    const auto look = [&](const Vec3& normal, double reach, std::ptrdiff_t crumbs, bool unturned) {
+        CAPTURE(reach);
+        Aggregate cut = m;
+        cut_along(cut, corner + 0.1 * reach * normal.normalized(), normal, 3, 1);
+        const Pieces pieces = find_pieces(cut);
+        REQUIRE(pieces.count == 2);
+        const auto own = static_cast<std::size_t>(pieces.particle_piece[0]);
+        CHECK(particles_in_crumbs(pieces) == crumbs);
+        CHECK(find_crumbs(pieces)[own] == 1);
+        CHECK(find_crumbs(pieces)[1 - own] == 0);
+        CHECK((find_unturned(pieces, cut)[own] == 1) == unturned);
+        CHECK(find_unturned(pieces, cut)[1 - own] == 0);
+    };
+    look(Vec3::Ones(), 0.3, 1, true);
+    look(Vec3::Ones(), 0.7, 4, false);
+    look(Vec3::UnitX(), 0.5, 6, false);
+    look(Vec3(0, 1, 1), 0.3, 6, true);
 }
 
 TEST_CASE("crumbs of an earlier stage are not blamed on the first blade of the next") {
