@@ -21,6 +21,7 @@ namespace swage {
 
 namespace {
 
+constexpr double kMuchMore = 1.2;    // memory
 constexpr double kLeastCells = 1.5;  // of a part whose stiffness the measured table tells
 
 struct CheckArguments {
@@ -202,8 +203,13 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     add_matter(lines, scene, input, cost);
     add_stages(lines, scene, cost);
     lines.add("steps", range_text(cost.steps, count_text));
-    lines.add("memory", fmt::format("about {}, of which the matter takes {}",
-                                    bytes_text(cost.memory_bytes), bytes_text(cost.mold.bytes)));
+    const bool may_crumble = cost.most_memory_bytes > kMuchMore * cost.memory_bytes;
+    lines.add("memory", fmt::format("about {}, of which the matter takes {}{}",
+                                    bytes_text(cost.memory_bytes), bytes_text(cost.mold.bytes),
+                                    may_crumble ? fmt::format("; up to {} if all of it breaks to "
+                                                              "rubble",
+                                                              bytes_text(cost.most_memory_bytes))
+                                                : ""));
     lines.add("disk", fmt::format("{} to {}, by what stills show and what is kept to go on from",
                                   bytes_text(cost.least_disk_bytes), bytes_text(cost.disk_bytes)));
     lines.add("time", range_text(cost.seconds, seconds_text) +
@@ -221,8 +227,8 @@ Json with_whole_counts(Json cost) {
         if (std::abs(value) < kMost) in[key] = std::llround(value);
     };
     for (const char* key :
-         {"cells", "particles", "connections", "matter_bytes", "memory_bytes", "disk_bytes_least",
-          "disk_bytes", "steps", "steps_least", "steps_most"}) {
+         {"cells", "particles", "connections", "matter_bytes", "memory_bytes", "memory_bytes_most",
+          "disk_bytes_least", "disk_bytes", "steps", "steps_least", "steps_most"}) {
         round(cost, key);
     }
     for (Json& body : cost.at("bodies")) round(body, "cells");

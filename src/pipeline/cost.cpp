@@ -13,6 +13,7 @@
 #include "machines/legs.h"
 #include "mold/prepare.h"
 #include "pipeline/accuracy.h"
+#include "pipeline/carried_insets.h"
 #include "pipeline/counted_matter.h"
 #include "pipeline/disk_cost.h"
 #include "pipeline/folded_bodies.h"
@@ -64,10 +65,10 @@ double lattice_steps_per_second(const BodySpec& body, double spacing, const SimS
 }
 
 // Of a mesh as it is mounted, divided where its edges are long.
-double mounted_vertices(const TriMesh& mesh, const SkinSettings& skin, double spacing) {
+double mounted_vertices(const TriMesh& mesh, bool divide, double spacing) {
     double vertices = static_cast<double>(mesh.position.size());
     const double longest = kLongestSkinEdge * spacing;
-    for (std::size_t t = 0; skin.divide && t < mesh.triangle.size(); ++t) {
+    for (std::size_t t = 0; divide && t < mesh.triangle.size(); ++t) {
         const auto& [a, b, c] = mesh.triangle[t];
         const Vec3 u = mesh.position[b] - mesh.position[a], v = mesh.position[c] - mesh.position[a];
         double parts = 1;
@@ -80,6 +81,20 @@ double mounted_vertices(const TriMesh& mesh, const SkinSettings& skin, double sp
         vertices += std::min(std::max(most, 0.5), made);
     }
     return vertices;
+}
+
+// Those of the work-piece may go on with it.
+void add_insets(const SceneSpec& scene, const std::vector<std::vector<TriMesh>>& insets,
+                double spacing, MemoryShare& share) {
+    for (const std::vector<TriMesh>& body : insets) {
+        for (const TriMesh& one : body) {
+            share.inset_triangles += static_cast<double>(one.triangle.size());
+        }
+    }
+    if (!carries_insets(scene, 0)) return;
+    for (const TriMesh& one : insets.front()) {
+        share.carried_vertices += mounted_vertices(one, true, spacing);
+    }
 }
 
 // Of the body with the shortest stable step. `counted`: or null.
@@ -192,14 +207,20 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
         vertices += scene.skin.kind == SkinKind::boundary
                         ? kVerticesPerFace * surface_area(input[b].to_mold()) /
                               (cost.body[b].spacing * cost.body[b].spacing)
-                        : mounted_vertices(input[b].mesh, scene.skin, cost.body[b].spacing);
+                        : mounted_vertices(input[b].mesh, scene.skin.divide, cost.body[b].spacing);
     }
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;
-    cost.memory_bytes = memory_bytes(scene, input,
-                                     {cost.mold.bytes, cost.mold.particles, cost.mold.active_cells,
-                                      load.surface_points / kPointsPerFace, vertices, way},
-                                     stills > 0);
+    MemoryShare share = {cost.mold.bytes,
+                         cost.mold.particles,
+                         cost.mold.active_cells,
+                         load.surface_points / kPointsPerFace,
+                         vertices,
+                         way};
+    if (counted != nullptr) add_insets(scene, counted->inset, cost.work_piece().spacing, share);
+    const MemoryBytes memory = memory_bytes(scene, input, share, stills > 0);
+    cost.memory_bytes = memory.about;
+    cost.most_memory_bytes = memory.most;
     const DiskShare disk = {double(cost.frames),    stills,
                             cost.mold.active_cells, cost.mold.particles,
                             cost.mold.bytes,        vertices,
@@ -396,6 +417,7 @@ Json cost_json(const RunCost& cost) {
             {"connections", cost.mold.connections},
             {"matter_bytes", cost.mold.bytes},
             {"memory_bytes", cost.memory_bytes},
+            {"memory_bytes_most", cost.most_memory_bytes},
             {"disk_bytes", cost.disk_bytes},
             {"disk_bytes_least", cost.least_disk_bytes},
             {"frames", cost.frames},

@@ -74,6 +74,7 @@ CountedMatter make_matter(const SceneSpec& scene, const std::vector<InputMesh>& 
                           const std::vector<double>& coarser, std::vector<std::string>& warning) {
     CountedMatter made;
     made.coarser = coarser;
+    made.inset.resize(input.size());
     std::vector<std::vector<std::string>> found;
     for (std::size_t b = 0; b < input.size(); ++b) {
         BodySpec body = scene.body[b];
@@ -82,7 +83,7 @@ CountedMatter make_matter(const SceneSpec& scene, const std::vector<InputMesh>& 
             body.mold.spacing = coarser[b] * estimate[b].spacing;
         }
         std::vector<std::string> findings;
-        made.matter.push_back(mold_body(input[b], body, findings));
+        made.matter.push_back(mold_body(input[b], body, findings, &made.inset[b]));
         if (coarser[b] > 1) findings.clear();
         found.push_back(std::move(findings));
         mount_probes(body, input[b].to_mold(), made.matter[b]);  // refuses those beside it

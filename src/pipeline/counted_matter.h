@@ -19,6 +19,7 @@ namespace swage {
 struct CountedMatter {
     std::vector<Aggregate> matter;  // of each body, where it is at its start
     std::vector<double> coarser;    // its spacing, over the one that is asked for: 1 or more
+    std::vector<std::vector<TriMesh>> inset;  // of each body
 
     bool is_whole() const;  // none is coarser
     // At what is asked.

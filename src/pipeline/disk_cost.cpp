@@ -148,13 +148,14 @@ double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& in
     return bytes;
 }
 
+double broken_vertices(const SceneSpec& scene, double particles, double vertices, double faces) {
+    const bool is_rough = scene.skin.roughness > 0 && scene.skin.kind != SkinKind::boundary;
+    return particles * (is_rough ? kRoughVertices : kBrokenVertices) +
+           std::sqrt(vertices * faces) * (is_rough ? kRoughCrossings : kCrossings);
+}
+
 double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, DiskShare of) {
-    if (scene.breaks()) {
-        const bool is_rough = scene.skin.roughness > 0 && scene.skin.kind != SkinKind::boundary;
-        of.vertices +=
-            of.particles * (is_rough ? kRoughVertices : kBrokenVertices) +
-            std::sqrt(of.vertices * of.faces) * (is_rough ? kRoughCrossings : kCrossings);
-    }
+    if (scene.breaks()) of.vertices += broken_vertices(scene, of.particles, of.vertices, of.faces);
     double images = 0;
     for (const InputMesh& one : input) images += embedded_bytes(one.mesh);
     const double stage = checkpoint_bytes(scene, input, of);

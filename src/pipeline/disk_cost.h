@@ -19,6 +19,10 @@ struct DiskShare {
     double faces = 0;    // of cells, as the bodies' surfaces have area for
 };
 
+// That skins have more of where all that may break is broken to its particles; `vertices` and
+// `faces`: as DiskShare has them.
+double broken_vertices(const SceneSpec& scene, double particles, double vertices, double faces);
+
 // What is kept of a run after a stage [byte].
 double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
                         const DiskShare& of);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "pipeline/disk_cost.h"
+
 namespace swage {
 
 namespace {
@@ -20,9 +22,16 @@ constexpr double kMountedVertex = 1080, kCutVertex = 600, kBoundaryVertex = 600;
 // where it was before (a bar of 20,449 and 116,909 twisted).
 constexpr double kMoved = 840, kRested = 1270;
 constexpr double kFlowed = 100, kFlowedSpring = 250;  // of copper that strikes, 90,751
-// A cell that may break, with springs, pieces and surfaces: of glass 4,400 to 28,000, by how much
-// of it is shattered (animals of 8,645 to 107,000 cells that strike at 8 m/s).
+// A cell that may break, with springs, pieces and surfaces, as brittle matter mostly does: of glass
+// 4,400 to 28,000, by how much of it is shattered (animals of 8,645 to 107,000 cells that strike at
+// 8 m/s).
 constexpr double kBroken = 6000;
+// Of rubble, each particle, and each vertex of its skin (balls of glass of 613 to 6,085 particles
+// with rough and plain faces, and with a boundary).
+constexpr double kRubble = 12e3, kRubbleVertex = 1550;
+// Of insets each triangle, as they are read and molded; each vertex of those that go on as skins do
+// (a bar with one of 299,568 and of 46,128 triangles, in slices).
+constexpr double kInsetTriangle = 170, kCarriedVertex = 1080;
 // A cell's face at the surface: its points; what these have near, where there are tools or bodies
 // (the animals and the bars).
 constexpr double kFace = 2700, kTouchingFace = 2500;
@@ -32,9 +41,9 @@ constexpr double kDrawnVertex = 500;
 
 }  // namespace
 
-double memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                    const MemoryShare& of, bool draws) {
-    double held = kProgram, read = 0;
+MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                         const MemoryShare& of, bool draws) {
+    double held = kProgram, read = kInsetTriangle * of.inset_triangles;
     for (const InputMesh& one : input) {
         const double triangles =
             static_cast<double>(one.mesh.triangle.size() + one.solid.triangle.size());
@@ -54,12 +63,21 @@ double memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const double vertex = scene.skin.kind == SkinKind::boundary
                               ? kBoundaryVertex
                               : kMountedVertex + (scene.any_stage(cuts) ? kCutVertex : 0);
-    const double simulated = of.matter + of.particles * particle +
-                             (scene.breaks() ? of.cells * kBroken : 0) + of.faces * face +
-                             of.vertices * vertex + of.way + kKept;
+    const double simulated = of.matter + of.particles * particle + of.faces * face +
+                             of.vertices * vertex + of.carried_vertices * kCarriedVertex + of.way +
+                             kKept;
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
-    const double drawn = draws ? kDrawing + kPixel * pixels + of.vertices * kDrawnVertex : 0;
-    return held + std::max({read, simulated, drawn});
+    const auto peak = [&](double broken, double vertices) {
+        const double drawn = draws ? kDrawing + kPixel * pixels + vertices * kDrawnVertex : 0;
+        return held + std::max({read, simulated + broken, drawn});
+    };
+    if (!scene.breaks()) return {peak(0, of.vertices), peak(0, of.vertices)};
+    const bool is_boundary = scene.skin.kind == SkinKind::boundary;
+    const double rubble = broken_vertices(scene, of.particles, of.vertices, of.faces),
+                 about = of.cells * kBroken,
+                 most = of.particles * kRubble +
+                        rubble * (is_boundary ? kBoundaryVertex : kRubbleVertex);
+    return {peak(about, of.vertices), peak(std::max(about, most), of.vertices + rubble)};
 }
 
 }  // namespace swage

@@ -17,10 +17,17 @@ struct MemoryShare {
     double faces = 0;     // of cells, that its surface is as large as
     double vertices = 0;  // of skins
     double way = 0;       // [byte], of machines
+    double inset_triangles = 0;
+    double carried_vertices = 0;  // of insets that go on with the matter
 };
 
-// [byte]. `draws`: stills too, once it is simulated.
-double memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                    const MemoryShare& of, bool draws);
+struct MemoryBytes {
+    double about = 0;
+    double most = 0;  // where all that may break is broken to its particles; else the same
+};
+
+// `draws`: stills too, once it is simulated.
+MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                         const MemoryShare& of, bool draws);
 
 }  // namespace swage

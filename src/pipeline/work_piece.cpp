@@ -241,8 +241,13 @@ Aggregate mold_with(const InputMesh& input, const BodySpec& body, const std::vec
 }  // namespace
 
 Aggregate mold_body(const InputMesh& input, const BodySpec& body,
-                    std::vector<std::string>& findings) {
-    return mold_with(input, body, read_insets(input, body, findings), findings);
+                    std::vector<std::string>& findings, std::vector<TriMesh>* solids) {
+    std::vector<Inset> insets = read_insets(input, body, findings);
+    Aggregate matter = mold_with(input, body, insets, findings);
+    for (Inset& one : insets) {
+        if (solids != nullptr) solids->push_back(std::move(one.solid));
+    }
+    return matter;
 }
 
 namespace {

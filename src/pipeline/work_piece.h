@@ -46,9 +46,9 @@ InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_ang
 std::vector<InputMesh> read_input_meshes(const SceneSpec& scene);
 
 // The body's matter, with its insets, as its mesh stands in its file. Throws as mold() does, of an
-// inset SceneError.
+// inset SceneError. `solids`: gets those of its insets.
 Aggregate mold_body(const InputMesh& input, const BodySpec& body,
-                    std::vector<std::string>& findings);
+                    std::vector<std::string>& findings, std::vector<TriMesh>* solids = nullptr);
 
 struct WorkPiece {
     std::string name, label;  // label: of its objects and looks
