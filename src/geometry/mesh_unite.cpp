@@ -22,10 +22,12 @@ namespace {
 
 constexpr double kOnSurface = 1e-9;  // of the size of both: no further from it
 
-// Which patches of one surface bound the union with another. Where the two lie on each other and
-// face the same way only `keep_common` ones do.
-std::vector<char> outer_patches(const CutPatches& cut, const TriMesh& other, double gap,
-                                bool keep_common) {
+enum class Common { no, yes };
+
+// Which patches of one surface bound the union with another, or what both have in common. Where the
+// two lie on each other and face the same way only `keep_common` ones do.
+std::vector<char> bounding_patches(const CutPatches& cut, const TriMesh& other, double gap,
+                                   Common part, bool keep_common) {
     const TriangleTree tree(other);
     std::vector<std::vector<int>> of_patch;
     std::vector<double> area;
@@ -41,7 +43,7 @@ std::vector<char> outer_patches(const CutPatches& cut, const TriMesh& other, dou
     };
     const auto is_off = [&](int t) { return tree.distance(middle_of(t)) > gap; };
     const auto is_smaller = [&](int s, int t) { return area[s] < area[t]; };
-    std::vector<char> outer;
+    std::vector<char> bounds;
     for (std::vector<int>& patch : of_patch) {
         int t = *std::ranges::max_element(patch, is_smaller);
         bool off = is_off(t);
@@ -58,16 +60,17 @@ std::vector<char> outer_patches(const CutPatches& cut, const TriMesh& other, dou
             if (off) t = *std::max_element(patch.begin(), on, is_smaller);
         }
         if (off) {
-            outer.push_back(std::abs(tree.winding_number(middle_of(t))) < 0.5);
+            const bool outer = std::abs(tree.winding_number(middle_of(t))) < 0.5;
+            bounds.push_back(outer == (part == Common::no));
             continue;
         }
         const Corners& c = cut.mesh.triangle[t];
         const Corners& beneath = other.triangle[tree.nearest(middle_of(t)).triangle];
         const bool agree =
             area_vector(cut.mesh.position, c).dot(area_vector(other.position, beneath)) > 0;
-        outer.push_back(agree && keep_common);
+        bounds.push_back(agree && keep_common);
     }
-    return outer;
+    return bounds;
 }
 
 // Vertices within the gap become one: rounding alone tells them apart. That opens no surface. What
@@ -161,17 +164,18 @@ void drop_flat(TriMesh& mesh, std::vector<int>& origin, double gap) {
     }
 }
 
-// Whether what does not bound the union lies within it, or on it. A patch that is not parted where
-// it should be lies neither in nor out.
-bool holds(const TriangleTree& result, const CutPatches& cut, const std::vector<char>& outer,
-           double gap) {
+// Whether what does not bound the result lies on its other side, or on it. A patch that is not
+// parted where it should be lies neither in nor out.
+bool parts_well(const TriangleTree& result, const CutPatches& cut, const std::vector<char>& bounds,
+                double gap, Common part) {
     std::vector<char> asked(cut.mesh.position.size(), 0);
     for (std::size_t t = 0; t < cut.patch.size(); ++t) {
-        if (outer[cut.patch[t]]) continue;
+        if (bounds[cut.patch[t]]) continue;
         for (const int i : cut.mesh.triangle[t]) {
             if (asked[i]++) continue;
             const Vec3& p = cut.mesh.position[i];
-            if (result.winding_number(p) < 0.5 && result.distance(p) > gap) return false;
+            const bool within = result.winding_number(p) > 0.5;
+            if (within == (part == Common::yes) && result.distance(p) > gap) return false;
         }
     }
     return true;
@@ -184,17 +188,17 @@ double size_of(const TriMesh& a, const TriMesh& b) {
 }
 
 // What is no further apart than `close` [m] in the result is one vertex.
-bool unite(const TriMesh& a, const TriMesh& b, double close, TriMesh& result,
-           std::vector<int>& origin) {
+bool combine(const TriMesh& a, const TriMesh& b, Common part, double close, TriMesh& result,
+             std::vector<int>& origin) {
     CutPatches cut_a, cut_b;
     if (!cut_along_each_other(split_fans(a), split_fans(b), cut_a, cut_b)) return false;
     const double gap = kOnSurface * size_of(a, b);
     result = TriMesh();
     origin.clear();
     std::map<std::array<double, 3>, int> place;
-    const auto add = [&](const CutPatches& cut, const std::vector<char>& outer, int base) {
+    const auto add = [&](const CutPatches& cut, const std::vector<char>& bounds, int base) {
         for (std::size_t t = 0; t < cut.patch.size(); ++t) {
-            if (!outer[cut.patch[t]]) continue;
+            if (!bounds[cut.patch[t]]) continue;
             Corners corners = cut.mesh.triangle[t];
             for (int& i : corners) {
                 const Vec3& p = cut.mesh.position[i];
@@ -207,14 +211,16 @@ bool unite(const TriMesh& a, const TriMesh& b, double close, TriMesh& result,
             origin.push_back(base + cut.origin[t]);
         }
     };
-    const std::vector<char> outer_a = outer_patches(cut_a, b, gap, true),
-                            outer_b = outer_patches(cut_b, a, gap, false);
-    add(cut_a, outer_a, 0);
-    add(cut_b, outer_b, static_cast<int>(a.triangle.size()));
+    const std::vector<char> bounds_a = bounding_patches(cut_a, b, gap, part, true),
+                            bounds_b = bounding_patches(cut_b, a, gap, part, false);
+    add(cut_a, bounds_a, 0);
+    add(cut_b, bounds_b, static_cast<int>(a.triangle.size()));
     merge_close(result, origin, close);
-    if (result.triangle.empty() || !is_closed(result)) return false;
+    if (!is_closed(result)) return false;
+    if (result.triangle.empty()) return part == Common::yes;
     const TriangleTree tree(result);
-    if (!holds(tree, cut_a, outer_a, 2 * close) || !holds(tree, cut_b, outer_b, 2 * close)) {
+    if (!parts_well(tree, cut_a, bounds_a, 2 * close, part) ||
+        !parts_well(tree, cut_b, bounds_b, 2 * close, part)) {
         return false;
     }
     drop_flat(result, origin, 2 * close);
@@ -225,10 +231,13 @@ bool unite(const TriMesh& a, const TriMesh& b, double close, TriMesh& result,
 }  // namespace
 
 bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
-    return unite(a, b, kOnSurface * size_of(a, b), result, origin);
+    return combine(a, b, Common::no, kOnSurface * size_of(a, b), result, origin);
 }
 
-bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+namespace {
+
+bool combine_grown(const TriMesh& a, const TriMesh& b, Common part, TriMesh& result,
+                   std::vector<int>& origin) {
     const double by = kGrown * size_of(a, b);
     const Box box = box_of(b.position);
     const Eigen::Array3d half = (0.5 * box.size()).cwiseMax(by);
@@ -237,7 +246,24 @@ bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vecto
     for (Vec3& p : grown.position) {
         p = box.center() + larger.cwiseProduct(p - box.center());
     }
-    return unite(a, grown, 4 * by, result, origin);
+    return combine(a, grown, part, 4 * by, result, origin);
+}
+
+}  // namespace
+
+bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+    return combine_grown(a, b, Common::no, result, origin);
+}
+
+bool intersect(const TriMesh& a, const TriMesh& b, TriMesh& result) {
+    std::vector<int> origin;
+    if (!combine(a, b, Common::yes, kOnSurface * size_of(a, b), result, origin) &&
+        !combine_grown(a, b, Common::yes, result, origin)) {
+        return false;
+    }
+    const double most = std::min(signed_volume(a), signed_volume(b));
+    const double volume = signed_volume(result);
+    return volume > -kOnSurface * most && volume < (1 + 10 * kGrown) * most;
 }
 
 }  // namespace swage

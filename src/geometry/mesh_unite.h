@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two bodies made one.
+// Two bodies made one, and what two have in common.
 #pragma once
 
 #include <vector>
@@ -18,5 +18,8 @@ bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>
 // for rounding, and so cut each other in parts only, do so no more.
 constexpr double kGrown = 2e-8;
 bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
+
+// What lies in both of two such surfaces. False when it cannot be made.
+bool intersect(const TriMesh& a, const TriMesh& b, TriMesh& result);
 
 }  // namespace swage
