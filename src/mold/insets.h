@@ -9,15 +9,19 @@
 
 namespace swage {
 
+// A body's closed surface, what its cells hold of it, and what of that came from their neighbours.
+struct MoldedSurface {
+    const TriMesh& mesh;
+    const std::vector<CellLayer>& layers;
+    const std::vector<SliverMove>& moves;
+};
+
 // Sets inset, cell_material and mixed_cell of a body whose cells are filled. What of an inset lies
-// outside is left out, and told in `findings`. Throws InsetError when an inset is no solid, or
-// fills nothing. NOTE: a cell holds two materials at most; a third and less goes to the two with
-// most.
-// `body`: the surface that these layers are of, where insets may reach out of it: it is not told,
-// and of a cell that the body fills in part they have no more than lies in both. NOTE: else what
-// reaches out of such a cell counts as if it did not.
-void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>& layers,
+// outside is left out, and told in `findings` unless it may reach out. Throws InsetError when an
+// inset is no solid, or fills nothing. NOTE: a cell holds two materials at most; a third and less
+// goes to the two with most.
+void place_insets(const std::vector<Inset>& insets, const MoldedSurface& body,
                   const MoldFrame& frame, Aggregate& matter, std::vector<std::string>& findings,
-                  const TriMesh* body = nullptr);
+                  bool may_reach_out);
 
 }  // namespace swage

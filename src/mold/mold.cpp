@@ -203,13 +203,14 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     if (2 * volume / area < kThinnest * spacing) refuse_thin(2 * volume / area, spacing);
     const MoldFrame frame = frame_over(surface_box(mesh), spacing);
     std::vector<CellLayer> layers = share_cells(mesh, frame);
-    const double lost = drop_slivers(layers);
+    std::vector<SliverMove> moves;
+    const double lost = drop_slivers(layers, &moves);
     Aggregate matter;
     matter.material = material;
     fill_cells(layers, frame, matter);
     if (matter.cell_fill.empty()) refuse_thin(2 * volume / area, spacing);
     place_particles(matter);
-    place_insets(insets, layers, frame, matter, findings, masses != nullptr ? &mesh : nullptr);
+    place_insets(insets, {mesh, layers, moves}, frame, matter, findings, masses != nullptr);
     if (masses != nullptr) weigh_materials(*masses, matter);
     share_out(layers, frame, matter);
     const double off_centre = match_moments(matter);

@@ -5,34 +5,24 @@ namespace swage {
 
 namespace {
 
-constexpr int kPlaces = 8, kFewer = 4;  // along each axis
+constexpr int kPlaces = 8;  // along each axis
 
 // The n-th of places that lie evenly in a cell, from 0 to 1.
-Vec3 place_in_cell(int n, int along) {
-    const Vec3 at(n % along, n / along % along, n / (along * along));
-    return (at + Vec3::Constant(0.5)) / along;
+Vec3 place_in_cell(int n) {
+    const Vec3 at(n % kPlaces, n / kPlaces % kPlaces, n / (kPlaces * kPlaces));
+    return (at + Vec3::Constant(0.5)) / kPlaces;
 }
 
 }  // namespace
-
-bool Overhang::covers(const CellFill& share, int k) const {
-    for (int n = 0; n < kFewer * kFewer * kFewer; ++n) {
-        const Vec3 point = frame_.point(2 * (place_in_cell(n, kFewer) + Vec3(share.i, share.j, k)));
-        if (inset_.winding_number(point) < 0.5 && body_.winding_number(point) > 0.5) return false;
-    }
-    return true;
-}
 
 CellFill Overhang::within(const CellFill& share, int k, double whole) const {
     CellFill part = share;
     part.fill = std::min(share.fill, whole);
     if (share.fill != 0) part.moment *= part.fill / share.fill;
-    // Most of such cells: an inset that lies on the body's surface ends outside.
-    if (covers(share, k)) return part;
     int in_inset = 0, in_both = 0, in_body = 0;
     Vec3 sum = Vec3::Zero();
     for (int n = 0; n < kPlaces * kPlaces * kPlaces; ++n) {
-        const Vec3 local = place_in_cell(n, kPlaces);
+        const Vec3 local = place_in_cell(n);
         const Vec3 point = frame_.point(2 * (local + Vec3(share.i, share.j, k)));
         const bool is_body = body_.winding_number(point) > 0.5;
         const bool is_inset = inset_.winding_number(point) > 0.5;

@@ -7,8 +7,8 @@
 
 namespace swage {
 
-// Counted at places that lie evenly in a cell: exact to about a tenth of what the surfaces leave
-// open there.
+// Where their surfaces cannot be cut along each other. Counted at places that lie evenly in a cell:
+// exact to about a tenth of what the surfaces leave open there.
 class Overhang {
   public:
     Overhang(const TriangleTree& body, const TriMesh& inset, const MoldFrame& frame)
@@ -19,9 +19,6 @@ class Overhang {
     CellFill within(const CellFill& share, int k, double whole) const;
 
   private:
-    // Whether the inset seems to have all that the body has of the cell.
-    bool covers(const CellFill& share, int k) const;
-
     const TriangleTree& body_;
     TriangleTree inset_;
     const MoldFrame& frame_;

@@ -37,8 +37,18 @@ std::vector<CellLayer> share_cells(const TriMesh& mesh, const MoldFrame& frame);
 
 inline constexpr double kLeastFill = 1e-3;
 
+// Null: the cell holds nothing.
+const CellFill* share_of(const std::vector<CellLayer>& layers, int i, int j, int k);
+
+// A cell's material that a neighbour has been given.
+struct SliverMove {
+    Vec3i from, to;
+};
+
 // Gives the material of cells with less than kLeastFill to their fullest face neighbours and takes
 // those cells out. Returns what had no neighbour and is lost [cells].
-double drop_slivers(std::vector<CellLayer>& layers);
+double drop_slivers(std::vector<CellLayer>& layers, std::vector<SliverMove>* moves = nullptr);
+// The same of what is a part of that body.
+void move_slivers(const std::vector<SliverMove>& moves, std::vector<CellLayer>& layers);
 
 }  // namespace swage

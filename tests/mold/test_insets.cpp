@@ -2,6 +2,10 @@
 #include "mold/insets.h"
 
 #include "base/error.h"
+#include "geometry/clip_mesh.h"
+#include "geometry/make_shape.h"
+#include "matter/material_volumes.h"
+#include "mold/overhang.h"
 #include "tests/mold/checks.h"
 
 using namespace swage;
@@ -16,6 +20,28 @@ Aggregate with_inset(const TriMesh& body, const TriMesh& solid, int across) {
     settings.across = across;
     return mold(body, light, settings, {{solid, heavy}});
 }
+
+// Its insets have densities of 1000 kg/m3 more each.
+Aggregate with_insets(const TriMesh& body, const std::vector<TriMesh>& solids, int across,
+                      std::vector<std::string>* told = nullptr) {
+    std::vector<Inset> insets;
+    Material material;
+    for (const TriMesh& solid : solids) {
+        material.density += 1000;
+        insets.push_back({solid, material});
+    }
+    MoldSettings settings;
+    settings.across = across;
+    return mold(body, {}, settings, insets, told);
+}
+
+// About x.
+TriMesh rod() {
+    return make_shape("rod", {{"length", 0.2}, {"diameter", 0.02}, {"division", 64}}).mesh;
+}
+
+// Reaches out of everything but below y.
+Box below(double y) { return {{-1, -1, -1}, {1, y, 1}}; }
 
 // All that lies before a plane through `point`, as far as `reach`.
 TriMesh half_space(const Vec3& point, const Vec3& normal, double reach) {
@@ -111,4 +137,149 @@ TEST_CASE("an inset too thin for its cells is not said to lie outside the body")
           "50 % of inset 1 lies outside the work-piece and is left out");
     // A box around what has rounded edges is meant to hold all of it.
     CHECK(told(box_mesh({-0.05, -0.0102, -0.01}, {0.05, 0.0102, 0.01})).empty());
+}
+
+TEST_CASE("a box that ends within cells of a curved surface has what of it lies in the body") {
+    const TriMesh body = rod();
+    for (const double y : {-0.007, -0.003, 0.0, 0.004}) {
+        const double lower = signed_volume(clipped_to_box(body, below(y)));
+        for (const int across : {3, 4, 6, 7}) {
+            INFO("below " << y << " at " << across << " across");
+            const Aggregate matter = with_insets(body, {box_mesh(below(y))}, across);
+            const std::vector<double> volume = material_volumes(matter);
+            CHECK(volume[1] == Approx(lower).epsilon(1e-6));
+            CHECK(volume[0] + volume[1] == Approx(signed_volume(body)).epsilon(1e-6));
+            CHECK(matter.mass() == Approx(1000 * (signed_volume(body) + lower)).epsilon(1e-6));
+        }
+    }
+    // And what of it does not is told.
+    std::vector<std::string> told;
+    const Box box = box_of(body.position);
+    with_insets(body, {box_mesh(box.low, {box.high.x(), -0.006, box.high.z()})}, 3, &told);
+    const double share = signed_volume(clipped_to_box(body, below(-0.006))) / (0.2 * 0.02 * 0.004);
+    REQUIRE(told.size() == 1);
+    CHECK(std::stod(told[0]) == Approx(100 * (1 - share)).epsilon(0.01));
+}
+
+TEST_CASE("a mesh that ends within cells of a curved surface has what of it lies in the body") {
+    const TriMesh body = rod();
+    for (const double angle : {0.3, 0.785}) {
+        const Pose turn{Quat(Eigen::AngleAxisd(angle, Vec3(1, 0.3, 0.2).normalized())),
+                        Vec3::Zero()};
+        for (const double y : {-0.007, -0.003, 0.0013}) {
+            const double lower =
+                signed_volume(clipped_to_box(moved(body, turn.inverse()), below(y)));
+            for (const int across : {3, 6}) {
+                INFO("below " << y << " turned by " << angle << " at " << across << " across");
+                const TriMesh solid = moved(box_mesh(below(y)), turn);
+                const std::vector<double> volume =
+                    material_volumes(with_insets(body, {solid}, across));
+                CHECK(volume[1] == Approx(lower).epsilon(1e-4));
+            }
+        }
+    }
+}
+
+TEST_CASE("where surfaces cannot be cut along each other, places tell what lies in both") {
+    const TriMesh body = rod(), solid = box_mesh(below(-0.007));
+    const MoldFrame frame = frame_over(box_of(body.position), 0.02 / 6);
+    const TriangleTree tree(body);
+    const Overhang overhang(tree, solid, frame);
+    const auto whole = share_cells(body, frame), own = share_cells(solid, frame);
+    double sum = 0;
+    for (int k = 0; k < static_cast<int>(own.size()); ++k) {
+        for (const CellFill& share : own[k].share) {
+            const CellFill* all = share_of(whole, share.i, share.j, k);
+            if (all != nullptr) sum += overhang.within(share, k, all->fill).fill;
+        }
+    }
+    const double lower = signed_volume(clipped_to_box(body, below(-0.007)));
+    CHECK(sum * frame.cell_volume() == Approx(lower).epsilon(0.02));
+}
+
+TEST_CASE("insets laid over each other are those that lie side by side") {
+    const TriMesh bar = box_mesh({0, 0, 0}, {10, 2, 2});
+    const auto slab = [](double from, double to) {
+        return box_mesh({from, -0.1, -0.1}, {to, 2.1, 2.1});
+    };
+    for (const double end : {2.4, 2.5, 2.75, 3.0}) {
+        const Aggregate over = with_insets(bar, {slab(-1, 8), slab(-1, end)}, 2);
+        const Aggregate beside = with_insets(bar, {slab(end, 8), slab(-1, end)}, 2);
+        CHECK(over.mass() == Approx(beside.mass()).epsilon(1e-9));
+        REQUIRE(over.mixed_cell.size() == beside.mixed_cell.size());
+        for (std::size_t n = 0; n < over.mixed_cell.size(); ++n) {
+            const MixedCell &one = over.mixed_cell[n], &other = beside.mixed_cell[n];
+            CHECK(one.cell == other.cell);
+            for (int m : {0, 1}) {
+                CHECK(one.material[m] == other.material[m]);
+                CHECK(one.fill[m] == Approx(other.fill[m]).epsilon(1e-6));
+                CHECK((one.centroid[m] - other.centroid[m]).norm() < 1e-6);
+            }
+            CHECK((one.normal - other.normal).norm() < 1e-6);
+        }
+    }
+}
+
+TEST_CASE("of insets that overlap within cells each has its volume") {
+    const TriMesh bar = box_mesh({0, 0, 0}, {10, 4, 4});
+    const auto check = [](const Aggregate& matter, const std::vector<double>& volume) {
+        const std::vector<double> has = material_volumes(matter);
+        REQUIRE(has.size() == volume.size());
+        for (std::size_t m = 0; m < has.size(); ++m) {
+            INFO("material " << m);
+            CHECK(has[m] == Approx(volume[m]).epsilon(1e-6));
+        }
+    };
+    // Cells of 1. Of a corner that both have each time.
+    const TriMesh low = box_mesh({-1, -1, -1}, {2.3, 5, 5}),
+                  wide = box_mesh({-1, -1, -1}, {6, 2, 5});
+    check(with_insets(bar, {wide, low}, 4), {160 - 48 - 2.3 * 8, 48 - 2.3 * 8, 2.3 * 16});
+    // The second takes from the first within the cells where the third takes from both.
+    check(with_insets(bar,
+                      {box_mesh({1, -1, -1}, {7, 5, 5}), box_mesh({1, 1.5, -1}, {9, 5, 5}),
+                       box_mesh({1, 1.5, -1}, {5, 5, 5})},
+                      4),
+          {160 - 36 - 40 - 40, 36, 40, 40});
+    // Boxes that are divided otherwise are meshes.
+    const auto divided = [](const TriMesh& box) {
+        TriMesh mesh = box;
+        const Corners t = mesh.triangle[0];
+        const int middle = static_cast<int>(mesh.position.size());
+        const Vec3 sum = mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]];
+        mesh.position.emplace_back(sum / 3);
+        mesh.triangle[0] = {t[0], t[1], middle};
+        mesh.triangle.push_back({t[1], t[2], middle});
+        mesh.triangle.push_back({t[2], t[0], middle});
+        return mesh;
+    };
+    const std::vector<double> volume{160 - 48 - 2.3 * 8, 48 - 2.3 * 8, 2.3 * 16};
+    check(with_insets(bar, {divided(wide), divided(low)}, 4), volume);
+    check(with_insets(bar, {wide, divided(low)}, 4), volume);
+    check(with_insets(bar, {divided(wide), low}, 4), volume);
+}
+
+TEST_CASE("a coat within a cell, between two parts of one material, has its volume") {
+    const TriMesh bar = box_mesh({0, 0, 0}, {10, 2, 2});
+    Material plain, coat;
+    coat.density = 5000;
+    const auto slab = [](double to) { return box_mesh({-1, -1, -1}, {to, 3, 3}); };
+    for (const int across : {2, 4}) {
+        MoldSettings settings;
+        settings.across = across;
+        for (const double end : {2.5, 2.55, 2.7, 3.05}) {
+            INFO("to " << end << " at " << across << " across");
+            std::vector<std::string> told;
+            const Aggregate matter =
+                mold(bar, plain, settings, {{slab(end + 0.2), coat}, {slab(end), plain}}, &told);
+            CHECK(material_volumes(matter)[1] == Approx(0.8).epsilon(1e-6));
+            CHECK(matter.mass() == Approx(40000 + 0.8 * 4000).epsilon(1e-6));
+            CHECK(told.size() == 2);  // that they reach out
+        }
+    }
+    // Of three materials the cell holds two, and that is told.
+    std::vector<std::string> told;
+    const Aggregate matter = with_insets(bar, {slab(2.6), slab(2.5)}, 2, &told);
+    CHECK(material_volumes(matter)[1] == 0);
+    REQUIRE(told.size() == 4);
+    CHECK(told[2].starts_with("inset 1 has 100 % less than its volume"));
 }
