@@ -228,14 +228,6 @@ bool combine(const TriMesh& a, const TriMesh& b, Common part, double close, TriM
     return true;
 }
 
-}  // namespace
-
-bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
-    return combine(a, b, Common::no, kOnSurface * size_of(a, b), result, origin);
-}
-
-namespace {
-
 bool combine_grown(const TriMesh& a, const TriMesh& b, Common part, TriMesh& result,
                    std::vector<int>& origin) {
     const double by = kGrown * size_of(a, b);
@@ -250,6 +242,10 @@ bool combine_grown(const TriMesh& a, const TriMesh& b, Common part, TriMesh& res
 }
 
 }  // namespace
+
+bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+    return combine(a, b, Common::no, kOnSurface * size_of(a, b), result, origin);
+}
 
 bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
     return combine_grown(a, b, Common::no, result, origin);
