@@ -12,7 +12,8 @@ namespace swage {
 namespace {
 
 // Of one inset; where others divide it further, what it shares with the next is not known.
-constexpr std::size_t kMostRegions = 100;
+// That many meshes at one place are no more than cells can hold, and as many as can be waited for.
+constexpr std::size_t kMostRegions = 100, kMostMeshes = 3;
 
 Box everywhere() {
     const Vec3 far = Vec3::Constant(std::numeric_limits<double>::infinity());
@@ -54,11 +55,16 @@ std::optional<TriMesh> InsetRegions::in_body() {
 
 std::optional<std::vector<InsetRegions::Signed>> InsetRegions::taken_from(int older) {
     const int inset = static_cast<int>(box_.size()) - 1;
-    std::vector<Signed> taken;
     if (had_[older].size() > kMostRegions) return std::nullopt;
+    std::vector<Region> shared;
     for (const Region& region : had_[older]) {
         const Region both = common(region, inset);
         if (holds_nothing(both.box)) continue;
+        if (both.meshes.size() > kMostMeshes) return std::nullopt;
+        shared.push_back(both);
+    }
+    std::vector<Signed> taken;
+    for (const Region& both : shared) {
         const std::optional<TriMesh>& surface = surface_of(both.meshes);
         if (!surface) return std::nullopt;
         taken.push_back({clipped_to_box(*surface, both.box), both.sign});
