@@ -41,8 +41,9 @@ std::optional<double> swollen_by(const WorkPiece& body) {
 
 std::optional<double> stretched_by(const WorkPiece& body, const BodyVolume& before) {
     const std::optional<double> is = enclosed_volume(body.skin, body.position);
-    if (!is || !before.skin || !(*before.skin > 0) || is_broken(body.matter)) return {};
-    if (!spans_pieces(body.skin, body.mount, body.matter)) return {};
+    if (!is || !before.skin || !(*before.skin > 0)) return {};
+    const bool is_made_anew = body.look && is_broken(body.matter);
+    if (is_made_anew || !spans_pieces(body.skin, body.mount, body.matter)) return {};
     return *is / *before.skin - present_volume(body.matter) / before.matter;
 }
 

@@ -25,8 +25,9 @@ Json volumes_json(const std::vector<WorkPiece>& bodies, const std::vector<BodyVo
 // volume its skin has grown more than its matter (below 0: less), where that is known.
 std::optional<double> swollen_by(const WorkPiece& body);
 
-// A cut alone makes no volume. By what share of its volume a skin that spans pieces of unbroken
-// matter has grown more than that since `before` (below 0: less), where that is known.
+// Cuts and breaks make no volume. By what share of its volume a skin that spans pieces of matter,
+// and is not made anew, has grown more than that since `before` (below 0: less), where that is
+// known.
 std::optional<double> stretched_by(const WorkPiece& body, const BodyVolume& before);
 
 }  // namespace swage

@@ -238,16 +238,16 @@ std::string shrunk(const StageEnd& end, std::size_t body) {
                 : "try more frames or smaller cells");
 }
 
-// Nothing has flowed, a blade has parted the matter, and the skin takes up more or less than it
-// did.
+// Nothing has flowed, the matter is in pieces, and the skin takes up more or less than it did.
 std::string stretched(const StageEnd& end, std::size_t b) {
-    if (end.totals.severed == 0 || end.last.plastic > 0) return {};
+    if (end.last.plastic > 0) return {};
     const double by = stretched_by(end.bodies[b], end.volumes_before[b]).value_or(0);
     if (std::abs(by) <= kSwollen) return {};
     return fmt::format(
-        "the skin of {} encloses {:.2g} % {} than before the cut: parts of it are stretched from "
-        "one piece to another; smaller cells or skin.kind = \"boundary\" avoid that",
-        name_among(end.bodies, end.bodies[b]), 100 * std::abs(by), by > 0 ? "more" : "less");
+        "the skin of {} encloses {:.2g} % {} than {}: parts of it are stretched from one piece to "
+        "another; smaller cells or skin.kind = \"boundary\" avoid that",
+        name_among(end.bodies, end.bodies[b]), 100 * std::abs(by), by > 0 ? "more" : "less",
+        end.totals.severed > 0 ? "before the cut" : "as the stage began");
 }
 
 std::string how_to_close(Solver solver, const Books& last) {

@@ -20,6 +20,7 @@
 #include "skin/parted_skin.h"
 #include "skin/section.h"
 #include "skin/thick_triangles.h"
+#include "skin/whole_parts.h"
 
 namespace swage {
 
@@ -39,13 +40,13 @@ int open_edges(const TriMesh& mesh) {
 class Breaker {
   public:
     Breaker(const TriMesh& whole, const Mount& mount, const Aggregate& matter, double roughness,
-            bool bounds_matter)
+            bool bounds_matter, std::vector<BrokenFace> faces)
         : whole_(whole),
           matter_(matter),
           bounds_matter_(bounds_matter),
           warp_(matter.lattice, roughness),
           parts_(warp_.is_none() ? 1 : kParts),
-          faces_(faces_to_part(matter, mount)),
+          faces_(std::move(faces)),
           skin_(whole, mount, matter, faces_, warp_) {}
 
     BrokenSkin run() {
@@ -441,7 +442,16 @@ bool is_broken(const Aggregate& matter) { return !broken_faces(matter).empty(); 
 
 BrokenSkin break_skin(const TriMesh& whole, const Mount& mount, const Aggregate& matter,
                       double roughness, bool bounds_matter) {
-    return Breaker(whole, mount, matter, roughness, bounds_matter).run();
+    std::vector<BrokenFace> faces = faces_to_part(matter, mount);
+    const auto broken_at = [&] {
+        return Breaker(whole, mount, matter, roughness, bounds_matter, faces).run();
+    };
+    BrokenSkin broken = broken_at();
+    if (!is_cut(mount) || follow_piece_beside(broken.mesh, broken.mount, matter)) return broken;
+    part_around_mixed(matter, faces);
+    broken = broken_at();
+    follow_piece_beside(broken.mesh, broken.mount, matter);
+    return broken;
 }
 
 }  // namespace swage

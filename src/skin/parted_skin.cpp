@@ -17,12 +17,12 @@ std::uint64_t key_of(const Vec3i& site, int axis) {
            static_cast<std::uint64_t>(axis) << 60;
 }
 
-bool is_cut(const Mount& mount) {  // by a blade
+}  // namespace
+
+bool is_cut(const Mount& mount) {
     return std::any_of(mount.side.begin(), mount.side.end(),
                        [](CornerMask side) { return side != kAllCorners; });
 }
-
-}  // namespace
 
 std::vector<BrokenFace> broken_faces(const Aggregate& matter) {
     std::vector<BrokenFace> faces;
@@ -69,6 +69,37 @@ std::vector<BrokenFace> faces_to_part(const Aggregate& matter, const Mount& moun
         }
     }
     return faces;
+}
+
+void part_around_mixed(const Aggregate& matter, std::vector<BrokenFace>& faces) {
+    std::unordered_set<std::uint64_t> known;
+    for (const BrokenFace& face : faces) known.insert(key_of(face.site, face.axis));
+    const auto add = [&](const Vec3i& site, int axis) {
+        if (known.insert(key_of(site, axis)).second) faces.push_back({site, axis});
+    };
+    const std::vector<int> piece = find_pieces(matter).particle_piece;
+    const CellId count = static_cast<CellId>(matter.cell_fill.size());
+    for (CellId cell = 0; cell < count; ++cell) {
+        const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
+        const CornerGroups side = corner_groups_of_cut(matter, corner);
+        if (side[0] == kAllCorners) continue;
+        const auto is_mixed = [&](int own) {
+            for (int c = 0; c < 8; ++c) {
+                if (side[own] >> c & 1 && piece[corner[c]] != piece[corner[own]]) return true;
+            }
+            return false;
+        };
+        for (int own = 0; own < 8; ++own) {
+            if (!is_mixed(own)) continue;
+            for (int c = 0; c < 8; ++c) {
+                if (side[own] >> c & 1) continue;
+                const Vec3i site = matter.lattice.cell_site(cell) + corner_step(c);
+                for (int axis = 0; axis < 3; ++axis) {
+                    add(site, axis), add(site - Vec3i::Unit(axis), axis);
+                }
+            }
+        }
+    }
 }
 
 namespace {

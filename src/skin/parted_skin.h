@@ -23,12 +23,16 @@ struct BrokenFace {
     int axis;
 };
 
+bool is_cut(const Mount& mount);  // by a blade
 // Where a connection along the lattice's axes broke by load.
 std::vector<BrokenFace> broken_faces(const Aggregate& matter);
 // And beside them in cells that a blade has severed. The surface of one side of its cut reaches
 // into cubes of the other there: the crack goes on through these, so that this surface parts too;
 // that of the other side is slit, its two faces staying together. `mount`: of the whole skin.
 std::vector<BrokenFace> faces_to_part(const Aggregate& matter, const Mount& mount);
+// And all around cubes into which the surface of one side reaches from cells in which that side is
+// of several pieces: as one part it would hang on to all of these.
+void part_around_mixed(const Aggregate& matter, std::vector<BrokenFace>& faces);
 
 class PartedSkin {
   public:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "skin/piece_map.h"
 
@@ -84,6 +85,61 @@ void follow_one_piece(const TriMesh& skin, Mount& mount, const Aggregate& matter
         }
     }
     if (is_changed) finish_mount(mount, matter);
+}
+
+namespace {
+
+// What is to carry all of the part that it may follow the piece; nothing where some of it is no
+// cell away from any corner of it.
+std::optional<std::vector<CellSide>> carried_by(const Part& part, const std::vector<int>& piece_of,
+                                                int piece, const Mount& mount, const PieceMap& map,
+                                                const Aggregate& matter) {
+    std::vector<CellSide> all;
+    for (std::size_t n = 0; n < part.vertex.size(); ++n) {
+        const int v = part.vertex[n];
+        const Vec3& place = mount.reference[v];
+        CellSide own{mount.cell[v], mount.side[v]};
+        if (piece_of[n] != piece) {
+            own = nearest_side(matter, mount.cell[v], place, [&](CellId cell, const Vec3i&) {
+                return map.side_of_piece(cell, place, piece);
+            });
+        }
+        if (own.cell < 0) return std::nullopt;
+        all.push_back(own);
+    }
+    return all;
+}
+
+}  // namespace
+
+bool follow_piece_beside(const TriMesh& skin, Mount& mount, const Aggregate& matter) {
+    const PieceMap map(matter);
+    bool is_changed = false, all = true;
+    for (const Part& part : parts_of(skin)) {
+        std::vector<int> piece_of;
+        std::map<int, int> count;
+        for (const int v : part.vertex) {
+            piece_of.push_back(map.piece_of(mount.place(v)));
+            ++count[piece_of.back()];
+        }
+        if (count.size() < 2) continue;
+        std::vector<std::pair<int, int>> order(count.begin(), count.end());
+        std::ranges::stable_sort(order, std::ranges::greater(), &std::pair<int, int>::second);
+        bool follows = false;
+        for (const auto& [piece, vertices] : order) {
+            const auto carried = carried_by(part, piece_of, piece, mount, map, matter);
+            if (!carried) continue;
+            for (std::size_t n = 0; n < part.vertex.size(); ++n) {
+                mount.cell[part.vertex[n]] = (*carried)[n].cell;
+                mount.side[part.vertex[n]] = (*carried)[n].side;
+            }
+            is_changed = follows = true;
+            break;
+        }
+        all = all && follows;
+    }
+    if (is_changed) finish_mount(mount, matter);
+    return all;
 }
 
 bool spans_pieces(const TriMesh& skin, const Mount& mount, const Aggregate& matter) {

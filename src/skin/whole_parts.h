@@ -15,6 +15,12 @@ namespace swage {
 // as it is. To be called when blades have severed matter that no load has broken.
 void follow_one_piece(const TriMesh& skin, Mount& mount, const Aggregate& matter);
 
+// Where load has broken what blades had severed: a connected part of the skin that follows several
+// pieces, as what lies beyond the particles of its side of a cut does, is made to follow the one
+// that most of it follows of those that are nowhere more than a cell away. False where a part is
+// beside no piece all over.
+bool follow_piece_beside(const TriMesh& skin, Mount& mount, const Aggregate& matter);
+
 // Whether any connected part of the skin follows several pieces, and is stretched as these part.
 bool spans_pieces(const TriMesh& skin, const Mount& mount, const Aggregate& matter);
 

@@ -7,6 +7,7 @@
 #include "geometry/box_mesh.h"
 #include "pipeline/stage_machine.h"
 #include "sim/static_forces.h"
+#include "skin/broken_skin.h"
 #include "tests/catch.h"
 #include "tests/scene/scene_folder.h"
 #include "tests/shared/block.h"
@@ -28,6 +29,8 @@ struct CutBar {
         bodies[0].matter = test::make_block(16, 4, 4, 0.0125, reading.scene->work_piece().material);
     }
 
+    int severed = 1;  // in the stage
+
     double modulus() const { return bodies[0].matter.material.young_modulus; }
     double stiffness() const { return modulus() * bodies[0].matter.volume(); }  // E V [J]
 
@@ -45,7 +48,7 @@ struct CutBar {
         const std::function<void()>& happens = [] {}) {
         const Machine machine = stage_machine(stage, bodies[0].matter, {}, Box{});
         StageTotals totals;
-        totals.severed = 1;
+        totals.severed = severed;
         totals.residual = residual;
         FrameReport first;
         first.body.resize(last.body.size());
@@ -256,7 +259,7 @@ TEST_CASE("volume that flow has changed in a stage is told, what pressure change
     CHECK(told_after(1.02, 1.02).find("gained 6.1 % of its volume by flow") != std::string::npos);
 }
 
-TEST_CASE("a skin that a cut alone has stretched from piece to piece is told of") {
+TEST_CASE("a skin that is stretched from piece to piece is told of, by a cut and later") {
     CutBar bar("copper");
     WorkPiece& piece = bar.bodies[0];
     piece.skin = box_mesh({-.1, -.025, -.025}, {.1, .025, .025});
@@ -269,11 +272,29 @@ TEST_CASE("a skin that a cut alone has stretched from piece to piece is told of"
         last.pieces = 2;
         last.plastic = plastic;
         const std::string text = bar.told_of(bar.reading.scene->stage[0], last, 1);
-        return text.find("more than before the cut") != std::string::npos;
+        const bool cut = text.find("more than before the cut") != std::string::npos;
+        const bool later = text.find("more than as the stage began") != std::string::npos;
+        CHECK_FALSE((bar.severed > 0 ? later : cut));
+        return cut || later;
     };
     CHECK_FALSE(told(1.02, 0));  // all of it follows one piece
     test::sever_plane(piece.matter, {.003, 0, 0}, Vec3::UnitX());
     CHECK(told(1.02, 0));
     CHECK_FALSE(told(1.009, 0));
     CHECK_FALSE(told(1.02, 1));  // what has flowed may be rounded
+    bar.severed = 0;
+    CHECK(told(1.02, 0));
+    // Matter that load broke: also as a cut.
+    for (ConnectionArrays& all : piece.matter.connection) {
+        all.damage.assign(piece.matter.particle_count(), 0.0f);
+        for (std::size_t p = 0; p < all.damage.size(); ++p) {
+            if (all.weight[p] <= 0) all.damage[p] = 1;
+        }
+    }
+    REQUIRE(is_broken(piece.matter));
+    CHECK(told(1.02, 0));
+    bar.severed = 1;
+    CHECK(told(1.02, 0));
+    piece.look = std::make_shared<NewLook>(piece.skin);  // a boundary is made anew then
+    CHECK_FALSE(told(1.02, 0));
 }

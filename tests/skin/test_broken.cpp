@@ -215,7 +215,7 @@ TEST_CASE("what a blade has cut and load breaks shows closed surfaces, all volum
         if (most > 1e-9) torn += edge(f.broken.mesh, 0).cross(edge(f.broken.mesh, 1)).norm() / 2;
     }
     torn /= surface_area(f.broken.mesh);
-    CHECK(torn <= (way == 0 ? 0 : .015));  // where a crack meets a cut aslant
+    CHECK(torn == 0);
 }
 
 TEST_CASE("new faces carry no texture, the old surface keeps its own, also along the break") {
