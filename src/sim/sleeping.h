@@ -5,7 +5,7 @@
 //     no particle goes farther than a thousandth of a spacing from where it was,
 //     its kinetic energy stays below a millionth of m g a.
 //
-// What rolls or slides slower than a 7000th of sqrt(g a) is taken as at rest; what is thrown and
+// What rolls or slides slower than a 14,000th of sqrt(g a) is taken as at rest; what is thrown and
 // stands at the top of its way, or swings, is not. Without gravity nothing ever rests.
 #pragma once
 
