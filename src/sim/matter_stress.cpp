@@ -194,7 +194,9 @@ class Sampler {
                          matter_.particle_position.at(lower);
         const double distance = way.norm();
         if (!(distance > 0)) return Mat3::Zero();
-        const double lost = all.damage.empty() || distance < length ? 0 : all.damage[lower];
+        // A pressed edge has all of its stiffness.
+        const bool whole = distance < length && c.direction < kEdgeCount;
+        const double lost = all.damage.empty() || whole ? 0 : all.damage[lower];
         double held =
             (1 - lost) * stiffness_in(matter_, cell, two, c.direction, fracture_.breaking());
         if (!fracture_.holding().empty()) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/lattice_forces.h"
 #include "tests/catch.h"
 #include "tests/shared/lattice_fixture.h"
 #include "tests/sim/equivalent_stress.h"
@@ -139,4 +140,27 @@ TEST_CASE("parts of a severed cell bear what each of them holds, and no more") {
         }
     }
     CHECK(parts == 8);
+}
+
+TEST_CASE("what has softened is told to bear no more pressure than its forces are") {
+    Material material = material_of(Elasticity::hencky, 0.25);
+    material.strength = 1e7;
+    material.toughness = 1e4;
+    Aggregate cell = make_block(1, 1, 1, 0.01, material);
+    cell.cell_cracked.assign(1, 1);
+    LatticeForces lattice(cell);
+    for (const double size : {1.004, 0.995}) {
+        deform(cell, [&](const Vec3& x) -> Vec3 { return size * x; });
+        Vec3Array force;
+        lattice.find(cell, Flow::trial, force);
+        lattice.commit(cell, Forces::fresh);
+        double virial = 0;
+        for (std::size_t p = 0; p < force.size(); ++p) {
+            virial -= force.x[p] * cell.particle_position.x[p];
+        }
+        REQUIRE(cell.connection[kEdgeCount].damage[0] > 0.1f);
+        const std::vector<StressSample> told = stress_samples(cell, {0});
+        REQUIRE(told.size() == 1);
+        CHECK(told[0].stress[0] == Approx(virial / cell.lattice.cell_volume()).epsilon(1e-6));
+    }
 }
