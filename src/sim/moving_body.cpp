@@ -227,8 +227,10 @@ void MovingBody::find_inner_forces(double step, BodyOutcome& outcome) {
 void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome) {
     find_inner_forces(step, outcome);
     if (drag_.acts()) {
+        // Forces do half of their work on the way to where they were found.
+        const double before = step > 0 ? drag_.power(matter_) : 0;
         const SurfaceDrag::Drag drag = drag_.add_forces(matter_, force_);
-        outcome.drag_work += step * drag.power;
+        outcome.drag_work += 0.5 * step * (before + drag.power);
         outcome.drag_bounded = outcome.drag_bounded || drag.bounded;
     }
     pushes_.add_forces(matter_, now, force_);
@@ -386,6 +388,7 @@ void MovingBody::save(State& state) const {
         state.damping = damping_;
         state.memory = matter_.branch_memory;
     }
+    state.drag = drag_.given();
     state.load = load_;
     state.gone = gone_;
     state.turned = turned_;
@@ -409,6 +412,7 @@ void MovingBody::restore(const State& state, BodyOutcome& outcome) {
         let_go();
         outcome.damped_work += block_energy_;
     }
+    drag_.put_back(state.drag);
     load_ = state.load;
     turned_ = state.turned;
     loss_to_book_ = state.loss_to_book;

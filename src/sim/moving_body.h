@@ -134,6 +134,7 @@ class MovingBody {
         std::optional<LoadSet> pushes;
         std::optional<InternalDamping> damping;  // none, nor memory: no copy is kept
         std::vector<BranchMemory> memory;
+        Vec3Array drag;  // empty: none acts
         std::vector<PartSum> load;
         double gone, turned, loss_to_book;
     };

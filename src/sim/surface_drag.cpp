@@ -7,6 +7,7 @@
 #include "matter/parted.h"
 #include "sim/surface_forces.h"
 #include "sim/vector_clones.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
@@ -127,19 +128,29 @@ SurfaceDrag::Drag SurfaceDrag::add_forces(const Aggregate& matter, Vec3Array& fo
         sum.bounded = sum.bounded || one.bounded;
         sum.power += one.power;
     }
+    set_zero(matter.particle_count(), given_);
     for (std::size_t n = 0; n < cell_.size(); ++n) {
-        for (int c = 0; c < 8; ++c) force.add(cell_[n].corner[c], vec3(push_[n][c]));
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 push = vec3(push_[n][c]);
+            force.add(cell_[n].corner[c], push);
+            given_.add(cell_[n].corner[c], push);
+        }
     }
     add_open_forces(matter, force, sum);
     return sum;
 }
 
-void SurfaceDrag::add_open_forces(const Aggregate& matter, Vec3Array& force, Drag& sum) const {
+double SurfaceDrag::power(const Aggregate& matter) const {
+    return given_.size() == 0 ? 0 : -dot(given_, matter.particle_velocity);
+}
+
+void SurfaceDrag::add_open_forces(const Aggregate& matter, Vec3Array& force, Drag& sum) {
     double power = 0;
     for (const auto& [open, most] : face_) {
         const Vec3 now = open.mean(matter.particle_velocity);
         const Vec3 f = force_on(open.outward(matter.particle_position), now, most, sum.bounded);
         spread(open, f, force);
+        spread(open, f, given_);
         power -= f.dot(now);
     }
     sum.power += power;

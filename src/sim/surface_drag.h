@@ -32,10 +32,14 @@ class SurfaceDrag {
         bool bounded = false;  // somewhere
     };
     Drag add_forces(const Aggregate& matter, Vec3Array& force);
+    // What these take at the present speeds [W].
+    double power(const Aggregate& matter) const;
+    const Vec3Array& given() const { return given_; }  // by them, to each particle [N]
+    void put_back(const Vec3Array& given) { given_ = given; }
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(face_);
+        io(face_, given_);
         for (Cell& cell : cell_) io(cell.parted);
     }
 
@@ -58,7 +62,7 @@ class SurfaceDrag {
     struct Kernel;
     // `outward`: area vector [m2]; `most`: force over speed [N s/m].
     Vec3 force_on(const Vec3& outward, const Vec3& velocity, double most, bool& bounded) const;
-    void add_open_forces(const Aggregate& matter, Vec3Array& force, Drag& sum) const;
+    void add_open_forces(const Aggregate& matter, Vec3Array& force, Drag& sum);
 
     AmbientDrag ambient_;
     DirectionalDrag facing_;
@@ -68,6 +72,7 @@ class SurfaceDrag {
     std::vector<Drag> chunk_;
     double step_;  // [s]
     std::vector<Face> face_;
+    Vec3Array given_;
 };
 
 }  // namespace swage

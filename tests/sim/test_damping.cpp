@@ -202,6 +202,21 @@ TEST_CASE("a body falling through air follows the tanh of quadratic drag") {
     CHECK(std::abs(r.remainder) < 0.01 * r.gravity_work);
 }
 
+TEST_CASE("what a medium takes is booked to the second order of the steps") {
+    const Solver solver = GENERATE(Solver::explicit_steps, Solver::energy_stepped);
+    Aggregate m = make_block(3, 3, 3, 0.05, springy(0));
+    for (double& v : m.particle_velocity.y) v = -5;
+    SimSettings settings = motion_settings(solver);
+    settings.medium_density = 1000;
+    settings.drag_coefficient = 1;
+    const Apparatus nothing;
+    Simulation simulation(m, nothing, settings);
+    FrameReport r;
+    for (int f = 0; f < 4; ++f) r = simulation.advance(still(0.01 * f), still(0.01 * (f + 1)));
+    CHECK(r.drag > 0.2 * 0.5 * m.mass() * 25);
+    CHECK(std::abs(r.remainder) < 0.002 * r.drag);
+}
+
 namespace {
 
 // A thin plate, its normal tilted from the vertical by an angle about z.
