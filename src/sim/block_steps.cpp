@@ -15,7 +15,7 @@ namespace swage {
 namespace {
 
 constexpr long kBlock = 64;         // steps
-constexpr double kWayAhead = 0.3;   // spacings a step that the fastest particle is given
+constexpr double kWayAhead = 0.3;   // spacings that the fastest particle, or tool, goes in a step
 constexpr int kPatience = 8;        // blocks until a halved step is doubled again
 constexpr double kLegShare = 0.25;  // of a leg, in an implicit step
 constexpr double kRescueStep = 64;  // explicit steps in an implicit one that stands in for them
@@ -69,9 +69,10 @@ double BlockSolver::connections_changed(std::size_t body, const Drive& now) {
     return bodies_.connections_changed(body, now);  // fewer are never faster, so the step stays
 }
 
-// What the state of the bodies and what the guard has asked for allow.
-double BlockSolver::longest_step(double leg) {
+// What the state of the bodies, tools that come near and what the guard has asked for allow.
+double BlockSolver::longest_step(const Way& way, const Drive& begin) {
     const bool is_free = is_implicit();
+    const double leg = way.to.time - way.from.time, left = way.to.time - begin.time;
     double dt = !is_free ? step_ : rescued_blocks_ > 0 ? kRescueStep * step_ : kLegShare * leg;
     bodies_.for_each_awake([&](std::size_t b) {
         MovingBody& body = bodies_[b];
@@ -82,6 +83,11 @@ double BlockSolver::longest_step(double leg) {
         const double speed = body.top_speed();
         if (speed > 0 && (!is_free || body.meets_tools()))
             dt = std::min(dt, kWayAhead * body.matter().lattice.spacing / speed);
+        if (is_free) return;
+        const double ahead = std::min(left, double(kBlock) * dt);
+        const double travel = body.drive_travel(begin, way.at(begin.time + ahead));
+        if (travel > 0)
+            dt = std::min(dt, kWayAhead * body.matter().lattice.spacing * (ahead / travel));
     });
     return share_ * dt;
 }
@@ -185,7 +191,7 @@ Finding BlockSolver::take(const Way& way, const Block& block, MoveOutcome& outco
 
 BlockSolver::Block BlockSolver::next_block(const Way& way, const Drive& begin) {
     const double left = way.to.time - begin.time;
-    const double longest = longest_step(way.to.time - way.from.time);
+    const double longest = longest_step(way, begin);
     if (has_half_kicks() && halvings_ == 0) {
         const double free = bodies_.free_time(way.from, way.to, begin);
         if (free > kWorthFlying * longest) {

@@ -66,7 +66,7 @@ class BlockSolver {
                        : drive_between(from, to, (time - from.time) / (to.time - from.time));
         }
     };
-    double longest_step(double leg);
+    double longest_step(const Way& way, const Drive& begin);
     bool is_implicit() const {
         return settings_.solver == Solver::implicit_steps || rescued_blocks_ > 0;
     }
