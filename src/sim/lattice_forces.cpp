@@ -141,7 +141,7 @@ Committed LatticeForces::commit(Aggregate& matter, Forces found, SlabGrowths* gr
     result.broken = broken.count;
     if (broken.count > 0 && cells_) {
         // Sound cells beside what broke turn into springs too.
-        result.fracture += energy_of_change(matter, energy_found(matter));
+        result.fracture += energy_of_change(matter, energy_to_come(matter));
     } else if (broken.count > 0) {
         connections_changed(matter);
     } else {
@@ -166,7 +166,8 @@ Cracked LatticeForces::crack(Aggregate& matter, Forces found) {
     const std::vector<CellId> cells =
         cells_beyond_strength(matter, loose_.laws(), is_seen ? &runs : nullptr, carried());
     if (cells.empty()) return {};
-    const double before = is_seen ? energy_found(matter) : elastic_energy(matter);
+    if (!is_seen) loose_.find_strains(matter, nullptr);
+    const double before = energy_to_come(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);
     for (CellId cell : cells) matter.cell_cracked[cell] = 1;
     return {static_cast<int>(cells.size()), energy_of_change(matter, before)};
@@ -174,7 +175,7 @@ Cracked LatticeForces::crack(Aggregate& matter, Forces found) {
 
 double LatticeForces::energy_of_change(Aggregate& matter, double before) {
     connections_changed(matter);
-    return before - energy_found(matter) - loose_.trial_loss();
+    return before - energy_to_come(matter);
 }
 
 bool LatticeForces::may_snap() const { return loose_.laws().snap_any() && !loose_.empty(); }
@@ -185,7 +186,8 @@ Committed LatticeForces::snap(Aggregate& matter) {
             return kMostBent * loose_.laws().snaps_at(connection.direction, connection.lower);
         });
     if (hinges.empty()) return {};
-    const double before = elastic_energy(matter);
+    loose_.find_strains(matter, nullptr);
+    const double before = energy_to_come(matter);
     for (ConnectionArrays& all : matter.connection) all.damage.resize(all.weight.size(), 0.0f);
     for (const Hinge& h : hinges) {
         matter.connection[h.direction].damage[h.lower] = 1;
@@ -203,6 +205,10 @@ double LatticeForces::elastic_energy(const Aggregate& matter) {
 double LatticeForces::energy_found(const Aggregate& matter) {
     const double lattice = cells_ ? cells_->elastic_energy(matter) : swage::elastic_energy(matter);
     return lattice + loose_.elastic_energy() + guard_energy_of(matter);
+}
+
+double LatticeForces::energy_to_come(const Aggregate& matter) {
+    return energy_found(matter) + loose_.trial_loss();
 }
 
 std::vector<double> LatticeForces::stiffness_bound(const Aggregate& matter) const {

@@ -122,11 +122,12 @@ class LatticeForces {
     double add_branches(const Aggregate& matter, std::span<const BranchStep> branches,
                         Vec3Array& force);
 
-    // After cells or connections have become others: energy that this took, beyond what softening
-    // on to the present positions will [J].
-    double energy_of_change(Aggregate& matter, double before);
-    // Where the strains of loose springs have just been found [J].
+    // Where the strains of loose springs have just been found [J]; and with it what softening on to
+    // the present positions is yet to take.
     double energy_found(const Aggregate& matter);
+    double energy_to_come(const Aggregate& matter);
+    // After cells or connections have become others: energy that this took, of energy_to_come().
+    double energy_of_change(Aggregate& matter, double before);
 
     Excess excess_;
     std::unique_ptr<LatticeSweep> spring_sweep_;  // where springs or branches act
