@@ -48,7 +48,10 @@ void LatticeForces::connections_changed(Aggregate& matter, bool severed) {
         flowed.assign(first, turned.end());
         turned.erase(first, turned.end());
     }
-    if (in_excess) loose_.take_over(matter, turned);
+    if (in_excess) {
+        loose_.lay_down_pressed(matter);
+        loose_.take_over(matter, turned);
+    }
     loose_.lay_to_rest(matter, flowed);
     others_changed(matter);
 }

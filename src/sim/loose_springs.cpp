@@ -100,6 +100,7 @@ void LooseSprings::add_springs(const Aggregate& matter, const CellRun& run, int 
                  .kind = !holds   ? Kind::closing
                          : breaks ? Kind::softening
                                   : Kind::elastic,
+                 .cell = cell,
                  .stiffness = stiffness_ * (cell_share(c.direction) * share) *
                               (holds ? 1 : kClosedStiffness),
                  .rest_length = rest[slot] * (1 + (set ? double(set->strain[slot]) : 0)),
@@ -179,6 +180,27 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<TurnedCell>& t
         share = low;
         lay_down(matter, cell.id(),
                  [&](std::size_t n) { return (1 + now[n].strain) / (1 + strain(n, bent, all)); });
+    }
+}
+
+void LooseSprings::lay_down_pressed(Aggregate& matter) const {
+    if (beside_sweep_) return;  // all that share a connection are as long at rest
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        const Spring& s = spring_[n];
+        const ConnectionArrays& all = matter.connection[static_cast<std::size_t>(s.direction)];
+        const double strain = now_[n].strain;
+        const bool breaks = s.kind != Kind::closing && s.direction < kEdgeCount &&
+                            !(all.weight[s.lower] > 0) && !all.damage.empty() &&
+                            all.damage[s.lower] >= 1;
+        if (!breaks || !(strain < 0)) continue;
+        // Not twice where what breaks and what holds on have one each.
+        if (n > 0 && spring_[n - 1].cell == s.cell && spring_[n - 1].slot == s.slot) continue;
+        CellSet set{s.cell, {}};
+        if (const CellSet* had = matter.set_of(s.cell)) set = *had;
+        float& kept = set.strain[s.slot];
+        const double longer_by = 1 + strain - strain / std::sqrt(kClosedStiffness);
+        kept = static_cast<float>((1 + double(kept)) * longer_by - 1);
+        matter.lay_down(set);
     }
 }
 

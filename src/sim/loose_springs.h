@@ -29,6 +29,9 @@ class LooseSprings {
     // For matter that breaks: what a blade severs, its tools pay for. connections_changed() must
     // follow.
     void take_over(Aggregate& matter, const std::vector<TurnedCell>& turned);
+    // The same of what has just broken, in cells that press on it: closed cracks are stiffer. To be
+    // called while the springs and their strains are still those of before.
+    void lay_down_pressed(Aggregate& matter) const;
     // The same so that they hold nothing, as they lie.
     void lay_to_rest(Aggregate& matter, const std::vector<TurnedCell>& turned);
 
@@ -82,6 +85,7 @@ class LooseSprings {
         ParticleId lower, upper;
         char direction, slot;
         Kind kind;
+        CellId cell;
         double stiffness;    // [N/m]
         double rest_length;  // [m]; mechanics of cells only
         double worst;        // largest strain so far, committed; of a diagonal: of its face
