@@ -279,6 +279,26 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     mixed_.add_forces(matter, laws, force);
 }
 
+// NOTE: the sweep does not know how cells of two materials have flowed.
+std::vector<const CellRun*> CellSweep::strained_runs(const Aggregate& matter) const {
+    std::vector<const CellRun*> runs;
+    for (const auto& part : strained_) runs.insert(runs.end(), part.begin(), part.end());
+    const std::size_t swept = runs.size();
+    const std::vector<CellRun>& all = pieces_.all(matter);
+    for (const MixedCell& mixed : matter.mixed_cell) {
+        if (fill_[mixed.cell] <= 0 || !(mixed.hardening() > 0)) continue;
+        const auto after =
+            std::upper_bound(all.begin(), all.end(), mixed.cell,
+                             [](CellId cell, const CellRun& run) { return cell < run.first; });
+        runs.push_back(&*std::prev(after));
+    }
+    if (runs.size() > swept) {
+        std::sort(runs.begin(), runs.end());
+        runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+    }
+    return runs;
+}
+
 // The fewer cells a particle has, the less they hold each other back. Of two materials in a cell
 // the bounds add up: the jump between them only softens.
 void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const {

@@ -45,9 +45,10 @@ class CellSweep {
     void add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const;
 
     // Runs of the last sweep with cells that may have lost half of their volume
-    // (sim/cell_volume.h), and with cells that may have reached the strain that is watched.
+    // (sim/cell_volume.h), and with cells that may have reached the strain that is watched, in
+    // their order.
     const SlabRuns& crushed_runs() const { return crushed_; }
-    const SlabRuns& strained_runs() const { return strained_; }
+    std::vector<const CellRun*> strained_runs(const Aggregate& matter) const;
 
     template <typename Io>
     void visit(Io& io) {  // what steps change

@@ -126,8 +126,8 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
             for (int n = 0; n < run.count; ++n) {
                 const CellId cell = run.first + n;
                 // Where a cell has flowed its connections do not tell its elastic strain.
-                const bool flowed = !springs && matter.cell_history.hardening_of(cell) > 0;
-                if (!springs && !flowed && measure[n] < far) continue;
+                const bool far_off = !springs && measure[n] < far;
+                if (far_off && !(matter.hardening_of(cell) > 0)) continue;
                 if (carried && (*carried)[cell] <= 0) continue;
                 const double onset = laws.of_cell(matter, cell).onset;
                 if (!(onset > 0)) continue;

@@ -159,9 +159,7 @@ Cracked LatticeForces::crack(Aggregate& matter, Forces found) {
     const bool is_seen = found == Forces::fresh;
     std::vector<const CellRun*> runs;
     if (is_seen && cells_) {
-        for (const auto& part : cells_->strained_runs()) {
-            runs.insert(runs.end(), part.begin(), part.end());
-        }
+        runs = cells_->strained_runs(matter);
     } else if (is_seen) {
         runs = cells_beside(matter, spring_sweep_->stretched_runs());
     }
