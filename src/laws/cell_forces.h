@@ -199,7 +199,11 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
     }
     if constexpr (requires { c.x.x.slope; }) {
         const Columns<N> e = slope_scaled(d, turning);
-        if constexpr (!knows_inside(kKind)) p = e * stress;
+        if constexpr (knows_inside(kKind)) {
+            p = turning_scaled(p, d, turning);
+        } else {
+            p = e * stress;
+        }
         return spread_stress<kPart, kFlowed>(slope_scaled(c, turning), e, a, share, p, g);
     } else {
         if constexpr (!knows_inside(kKind)) p = d * stress;

@@ -139,5 +139,28 @@ SWAGE_INLINE CornerSums<Dual<N>> slope_scaled(const CornerSums<Dual<N>>& a, doub
             slope_scaled(a.xy, s), slope_scaled(a.yz, s), slope_scaled(a.zx, s),
             slope_scaled(a.xyz, s)};
 }
+// Of a stress p = f s: the share `turning` of f' s in its slope f' s + f s'. What is flat or inside
+// out has no such s: its slope stays.
+template <typename N>
+SWAGE_INLINE Columns<Dual<N>> turning_scaled(const Columns<Dual<N>>& p, const Columns<Dual<N>>& f,
+                                             double turning) {
+    if (turning == 1) return p;
+    const auto value = [](const Triple<Dual<N>>& t) __attribute__((always_inline)) {
+        return Triple<N>{t.x.value, t.y.value, t.z.value};
+    };
+    const auto slope = [](const Triple<Dual<N>>& t) __attribute__((always_inline)) {
+        return Triple<N>{t.x.slope, t.y.slope, t.z.slope};
+    };
+    const Columns<N> at = {value(f.x), value(f.y), value(f.z)},
+                     way = {slope(f.x), slope(f.y), slope(f.z)};
+    const Triple<N> x = cross(at.y, at.z), y = cross(at.z, at.x), z = cross(at.x, at.y);
+    const N none{}, size = dot(at.x, x);
+    const N share = size > none ? (turning - 1) / size : none;
+    const auto scaled = [&](const Triple<Dual<N>>& t) __attribute__((always_inline)) {
+        const Triple<N> s = {dot(x, value(t)), dot(y, value(t)), dot(z, value(t))};
+        return pair(value(t), slope(t) + share * (way * s));
+    };
+    return {scaled(p.x), scaled(p.y), scaled(p.z)};
+}
 
 }  // namespace swage

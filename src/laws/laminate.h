@@ -55,6 +55,15 @@ template <typename N>
 SWAGE_INLINE Columns<Dual<N>> turned_by(const Columns<Dual<N>>& f, double turning) {
     return slope_scaled(f, turning);
 }
+template <typename N>
+SWAGE_INLINE const Columns<N>& turned_by(const Columns<N>& stress, const Columns<N>&, double) {
+    return stress;
+}
+template <typename N>
+SWAGE_INLINE Columns<Dual<N>> turned_by(const Columns<Dual<N>>& stress, const Columns<Dual<N>>& f,
+                                        double turning) {
+    return turning_scaled(stress, f, turning);
+}
 
 // Stress at gradient f. Numbers with a slope: of what turning does to the stress, theirs gets the
 // share `turning`.
@@ -63,6 +72,7 @@ SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState
                               double turning = 1) {
     if (knows_inside(m.kind)) {
         s.stress = m.kind == CellKind::foam ? foam_stress(*m.law, f) : rubber_stress(*m.law, f);
+        s.stress = turned_by(s.stress, f, turning);
         s.mode_stress = mode_stress(*m.law, s.modes);
         return;
     }

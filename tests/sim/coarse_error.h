@@ -22,18 +22,18 @@ inline Vec3Array random_direction(std::size_t count) {
 }
 
 // Of the largest force along a random direction of the coarse corners.
-inline double coarse_error(const Aggregate& matter, const Vec3i& ratio) {
+inline double coarse_error(const Aggregate& matter, const Vec3i& ratio, TangentKind kind = {}) {
     CellTangent tangent(matter, matter.cell_fill);
     const Lattice coarse = coarse_lattice(matter.lattice, ratio);
     const LatticeTransfer transfer(matter.lattice, coarse, ratio);
     NodeStiffness matrix(coarse);
-    matrix.add_cells(coarse, tangent.coarse_cells(matter, {}, coarse, ratio));
+    matrix.add_cells(coarse, tangent.coarse_cells(matter, kind, coarse, ratio));
     const Vec3Array u = random_direction(particle_count(coarse));
     Vec3Array fine, product, back, got;
     fine.resize(matter.particle_count());
     for (auto* x : {&fine.x, &fine.y, &fine.z}) std::fill(x->begin(), x->end(), 0.0);
     transfer.add_prolonged(u, fine);
-    tangent.product(matter, {}, fine, product);
+    tangent.product(matter, kind, fine, product);
     transfer.restricted(product, back);
     matrix.product(u, got);
     double largest = 0, off = 0;

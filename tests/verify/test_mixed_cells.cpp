@@ -8,6 +8,7 @@
 #include "sim/cell_tangent.h"
 #include "sim/lattice_forces.h"
 #include "sim/vector_clones.h"
+#include "sim/vector_sums.h"
 #include "tests/catch.h"
 #include "tests/sim/coarse_error.h"
 #include "tests/sim/force_checks.h"
@@ -155,6 +156,16 @@ TEST_CASE("the tangent of cells of two materials is how their forces change, flo
             double work = 0;
             for (std::size_t p = 0; p < way.size(); ++p) work += way.at(p).dot(product.at(p));
             CHECK(work > 0);
+            // Nor does a turn of the whole, which strains nothing, meet a force.
+            Vec3Array turn = here;
+            const Vec3 axis(0.3, -0.5, 0.8);
+            for (std::size_t p = 0; p < way.size(); ++p) turn.set(p, axis.cross(here.at(p)));
+            tangent.product(m, {Flow::trial, 0}, turn, product);
+            double left = 0;
+            for (std::size_t p = 0; p < way.size(); ++p) {
+                left = std::max(left, product.at(p).norm());
+            }
+            CHECK(left < 1e-7 * largest * longest_of(turn));
         }
     }
 }
