@@ -61,8 +61,9 @@ NewtonProblem firm_problem(StaticForces& forces, const Drive& to, double accurac
     return problem;
 }
 
-// To either side along this way, as far as the forces drive the body there.
-void go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
+// To either side along this way, as far as the forces drive the body there. Returns false, and
+// leaves it, where they do to neither.
+bool go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
     Vec3Array& x = forces.matter.particle_position;
     const double a = forces.matter.lattice.spacing, longest = longest_of(way);
     const Vec3Array from = x;
@@ -74,8 +75,14 @@ void go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
     };
     double far = kNudge * a;
     if (work_at(-far) > work_at(far)) far = -far;
+    if (!(work_at(far) > 0)) {
+        x = from;
+        forces.find(to);
+        return false;
+    }
     while (std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
     work_at(far);
+    return true;
 }
 
 // What is in some grip, or all, has gone [m]: other pieces go anywhere.
@@ -213,7 +220,8 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
             continue;
         }
         ++turn;
-        go_along(forces, move.to, newton_->softest_motion());
+        // The forces know more than the tangent does: how a pressure turns with the surface.
+        if (!go_along(forces, move.to, newton_->softest_motion())) break;
         move.rest = x;
         again(std::clamp(kDriven * forces.residual_of(forces.force, move.to), kFinest * tolerance_,
                          tolerance_));
