@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
+#include <map>
 
 #include "base/expression.h"
 #include "base/text_error.h"
@@ -153,16 +153,21 @@ std::string depth_note(const Machine& machine, std::size_t n, const std::vector<
     return "";
 }
 
-// Of a load whose points are all clamped, so that its grips bear it and nothing else feels it.
+// Of a load whose points are all clamped, so that its grips bear it and nothing else feels it. Of a
+// patch that is held in part the load may act on the other part.
 std::string clamped_note(const Load& load, const std::vector<Grip>& grips) {
-    std::set<int> clamped;
+    constexpr double kWhole = 1 - 1e-6;
+    std::map<int, double> clamped;
     for (const Grip& grip : grips) {
-        if (grip.hold == Vec3::Ones() && grip.body == load.body) {
-            clamped.insert(grip.point.begin(), grip.point.end());
+        if (grip.hold != Vec3::Ones() || grip.body != load.body) continue;
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            clamped[grip.point[n]] += grip.share_of(n);
         }
     }
-    const bool is_free = std::any_of(load.point.begin(), load.point.end(),
-                                     [&](int point) { return !clamped.contains(point); });
+    const bool is_free = std::any_of(load.point.begin(), load.point.end(), [&](int point) {
+        const auto at = clamped.find(point);
+        return at == clamped.end() || at->second < kWhole;
+    });
     if (is_free) return "";
     return load_name(load.name) + " does nothing: all that it acts on is clamped";
 }

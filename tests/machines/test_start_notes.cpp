@@ -250,6 +250,24 @@ TEST_CASE("a load on nothing but what grips clamp is noted, and one on more is n
     CHECK(notes(Side::left, {true, false, true}).empty());
 }
 
+TEST_CASE("a narrow load beside a grip is not said to do nothing, one on what is all held is") {
+    const auto notes = [](const char* from, const char* to) {
+        MachineSpec spec;
+        spec.name = "vice";
+        spec.grip = {vice_grips()[0]};
+        spec.grip[0].to[0] = "-0.399*length";  // over 0.08 of a row of patches
+        LoadSpec load;
+        load.name = "wind";
+        load.on = Side::top;
+        load.force = Expression3{"0", "-1 N", "0"};
+        load.box = {{{from, "0", "-width"}, {to, "height", "width"}}};
+        spec.load = {load};
+        return notes_of(spec);
+    };
+    CHECK(notes("-0.398*length", "-0.39*length").empty());
+    CHECK(tells(notes("-0.48*length", "-0.402*length"), "load wind does nothing"));
+}
+
 TEST_CASE("loads that come to nothing at this work-piece are noted, and those that act are not") {
     const auto notes = [](const Expression3& force, const char* strength,
                           const char* gravity = "") {
