@@ -316,7 +316,7 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
             evaluate(*spec.force, setting.known, Quantity::force));
         std::vector<double> area;
         for (std::size_t n = 0; n < load.point.size(); ++n) {
-            area.push_back(load.share_of(n) * matter.surface.area(load.point[n]));
+            area.push_back(load.share_of(n) * patch_area(matter, std::size_t(load.point[n])));
         }
         const double all = std::accumulate(area.begin(), area.end(), 0.0);
         for (double own : area) load.force.push_back(own / all * force);

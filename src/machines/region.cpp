@@ -7,6 +7,7 @@
 
 #include "geometry/disjoint_sets.h"
 #include "laws/pressure.h"
+#include "matter/parted.h"
 
 namespace swage {
 
@@ -126,6 +127,15 @@ SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
     return part;
 }
 
+double patch_area(const Aggregate& matter, std::size_t point) {
+    constexpr double kRounded = 1e-6;  // what is not strained keeps the area that it has to the bit
+    const double area = matter.surface.area(point);
+    if (matter.surface.is_loose(point) || is_parted(matter, point)) return area;
+    const double stretch =
+        present_area<double>(matter.surface_gradient(point), matter.surface.normal(point)).norm();
+    return std::abs(stretch - 1) < kRounded ? area : stretch * area;
+}
+
 std::vector<SurfaceComponent> components_of(const Aggregate& matter, const SurfacePart& part) {
     const NearPoints near(matter, part.point);
     DisjointSets sets(part.point.size());
@@ -140,8 +150,7 @@ std::vector<SurfaceComponent> components_of(const Aggregate& matter, const Surfa
                                              {0, Vec3::Zero()});
     for (std::size_t n = 0; n < part.point.size(); ++n) {
         const std::size_t p = std::size_t(part.point[n]);
-        const Vec3 now = present_area<double>(matter.surface_gradient(p), matter.surface.normal(p));
-        const double area = part.share_of(n) * matter.surface.area(p) * now.norm();
+        const double area = part.share_of(n) * patch_area(matter, p);
         SurfaceComponent& component = components[std::size_t(set_of[n])];
         component.area += area;
         component.middle += area * matter.surface_position(p);

@@ -141,3 +141,23 @@ TEST_CASE("what of a surface looks to a side is told part by part, with how much
     REQUIRE(boxed.load_on.at(0).size() == 1);
     CHECK(boxed.load_on[0][0].area == Approx((0.8 - 0.48) * 0.8).epsilon(1e-4));
 }
+
+TEST_CASE("a force spreads over what is stretched as that lies, and acts where it is said to") {
+    Aggregate matter = upright();
+    deform(matter, [](const Vec3& x) {  // its upper half is drawn out and turned
+        const double y = x.y() > 0 ? 3 * x.y() : x.y();
+        return Vec3(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()) * Vec3(x.x(), y, x.z()));
+    });
+    const Machine machine = with(matter, push(Side::top));
+    const Load& load = machine.apparatus.load.at(0);
+    Vec3 middle = Vec3::Zero(), sum = Vec3::Zero();
+    double all = 0;
+    for (std::size_t n = 0; n < load.point.size(); ++n) {
+        middle += load.force[n].norm() * matter.surface_position(std::size_t(load.point[n]));
+        all += load.force[n].norm();
+        sum += load.force[n];
+    }
+    CHECK(sum.norm() == Approx(all));
+    REQUIRE(machine.load_on.at(0).size() == 1);
+    CHECK((middle / all - machine.load_on[0][0].middle).norm() < 1e-9);
+}
