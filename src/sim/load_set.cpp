@@ -73,25 +73,48 @@ LoadSet::LoadSet(const Apparatus& apparatus, const SimSettings& settings, int bo
     : apparatus_(&apparatus), body_(body), gravity_(settings.gravity) {}
 
 void LoadSet::connections_changed(const Aggregate& matter) {
-    bool presses = false;
-    for_each_load([&](std::size_t, const Load& load) { presses = presses || load.force.empty(); });
-    if (!presses) return;
+    if (apparatus_->load.empty()) return;
     const std::vector<Centre> centre = centres(matter);
+    std::vector<std::vector<Vec3>> force_at(last_.moment.size());
+    if (started_) {
+        for_each_load([&](std::size_t l, const Load& load) {
+            if (!load.force.empty()) force_at[l] = moments_of(load, matter);
+        });
+    }
     const std::shared_ptr<const Parted> before = std::exchange(parted_, nullptr);
-    const std::size_t count = matter.surface.size();
+    bool presses = false, is_torn_somewhere = false;
     Parted parted;
-    parted.is_off.resize(count);
-    parallel_each(count, kChunk, [&](std::size_t p) { parted.is_off[p] = is_parted(matter, p); });
-    if (std::find(parted.is_off.begin(), parted.is_off.end(), 1) != parted.is_off.end()) {
-        parted.pieces = find_pieces(matter);
-        const std::vector<OpenFace> open = laid_open(matter);
+    parted.bearer.resize(apparatus_->load.size());
+    for_each_load([&](std::size_t l, const Load& load) {
+        presses = presses || load.force.empty();
+        if (load.force.empty()) return;
+        parted.bearer[l] = bearers(load, matter, before ? before->bearer[l] : parted.bearer[l]);
+        is_torn_somewhere = is_torn_somewhere || !parted.bearer[l].empty();
+    });
+    if (presses) {
+        parted.is_off.resize(matter.surface.size());
+        parallel_each(parted.is_off.size(), kChunk,
+                      [&](std::size_t p) { parted.is_off[p] = is_parted(matter, p); });
+        presses = std::find(parted.is_off.begin(), parted.is_off.end(), 1) != parted.is_off.end();
+    }
+    if (presses || is_torn_somewhere) {
+        std::vector<OpenFace> open;
+        if (presses) parted.pieces = find_pieces(matter), open = laid_open(matter);
         for (const Load& load : apparatus_->load) {
             parted.face.push_back(pressed(load, matter.surface, parted.pieces, open));
         }
         parted_ = std::make_shared<const Parted>(std::move(parted));
     }
-    renew_last(matter, before.get());
+    renew_last(matter, before.get(), force_at);
     keep_centres(centre, matter);
+}
+
+SurfacePoints::Carriers LoadSet::carriers(const Load& load, std::size_t n,
+                                          const Aggregate& matter) const {
+    const std::vector<Bearer>* bearer = parted_ ? &parted_->bearer[index_of(load)] : nullptr;
+    return bearer == nullptr || bearer->empty()
+               ? matter.surface.carriers(std::size_t(load.point[n]))
+               : carriers_by((*bearer)[n], matter);
 }
 
 std::vector<OpenFace> LoadSet::pressed(const Load& load, const SurfacePoints& surface,
@@ -116,10 +139,18 @@ std::span<const OpenFace> LoadSet::faces_of(const Load& load) const {
     return parted_->face[index_of(load)];
 }
 
-// What is laid open now has not moved since it was.
-void LoadSet::renew_last(const Aggregate& matter, const Parted* before) {
+// What is laid open now has not moved since it was; nor does a force that acts elsewhere now.
+void LoadSet::renew_last(const Aggregate& matter, const Parted* before,
+                         const std::vector<std::vector<Vec3>>& force_at) {
     if (last_.force.empty()) return;  // not started
     for_each_load([&](std::size_t l, const Load& load) {
+        if (!load.force.empty()) {
+            const std::vector<Vec3> now = moments_of(load, matter);
+            for (std::size_t n = 0; n < now.size(); ++n) {
+                if (now[n] != force_at[l][n]) last_.moment[l][n] += now[n] - force_at[l][n];
+            }
+            return;
+        }
         const std::size_t points = load.point.size();
         std::map<std::array<ParticleId, 4>, std::size_t> known;
         for (std::size_t n = points; n < last_.force[l].size(); ++n) {
@@ -155,10 +186,13 @@ std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter)
     std::vector<double> area;
     area.reserve(load.point.size());
     const bool presses = load.force.empty();
+    const bool is_forced = !presses && load.force[0] != Vec3::Zero();
     for (std::size_t n = 0; n < load.point.size(); ++n) {
         const int p = load.point[n];
         const bool is_off = presses && parted_ != nullptr && parted_->is_off[p];
-        area.push_back(is_off ? 0 : load.share_of(n) * matter.surface.area(p));
+        const double whole =
+            is_forced ? load.force[n].norm() : load.share_of(n) * matter.surface.area(p);
+        area.push_back(is_off ? 0 : whole);
     }
     const double whole = matter.lattice.spacing * matter.lattice.spacing;
     for (const OpenFace& face : faces_of(load)) area.push_back(face.share * whole);
@@ -168,7 +202,12 @@ std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter)
 std::vector<Vec3> LoadSet::positions_of(const Load& load, const Aggregate& matter) const {
     std::vector<Vec3> position;
     position.reserve(load.point.size());
-    for (int p : load.point) position.push_back(matter.surface_position(p));
+    for (std::size_t n = 0; n < load.point.size(); ++n) {
+        const SurfacePoints::Carriers by = carriers(load, n, matter);
+        Vec3 x = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) x += by.weight[c] * matter.particle_position.at(by.corner[c]);
+        position.push_back(x);
+    }
     for (const OpenFace& face : faces_of(load)) {
         position.push_back(face.mean(matter.particle_position));
     }
@@ -184,7 +223,7 @@ LoadSet::Pushed LoadSet::pushed(const Load& load, std::size_t n, const Aggregate
     };
     const std::size_t points = load.point.size();
     if (n < points) {
-        const SurfacePoints::Carriers by = matter.surface.carriers(load.point[n]);
+        const SurfacePoints::Carriers by = carriers(load, n, matter);
         for (int c = 0; c < 8; ++c) add(by.corner[c], by.weight[c]);
     } else {
         for (ParticleId p : faces_of(load)[n - points].corner) add(p, 0.25);
@@ -300,7 +339,8 @@ void LoadSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& f
         const std::vector<Vec3> push = forces_of(load, now.load_strength[l], matter);
         const std::size_t points = load.point.size();
         for (std::size_t n = 0; n < points; ++n) {
-            spread(matter.surface, load.point[n], push[n], force);
+            const SurfacePoints::Carriers by = carriers(load, n, matter);
+            for (int c = 0; c < 8; ++c) force.add(by.corner[c], by.weight[c] * push[n]);
         }
         const std::span<const OpenFace> face = faces_of(load);
         for (std::size_t n = 0; n < face.size(); ++n) spread(face[n], push[points + n], force);

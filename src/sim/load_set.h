@@ -14,6 +14,7 @@
 #include "matter/drive.h"
 #include "sim/laid_open.h"
 #include "sim/settings.h"
+#include "sim/torn_forces.h"
 
 namespace swage {
 
@@ -85,13 +86,14 @@ class LoadSet {
   private:
     // What has come of the surface since a blade or a crack has parted cells.
     struct Parted {
-        std::vector<char> is_off;  // of each point: its cell is parted
+        std::vector<char> is_off;  // of each point, where anything presses: its cell is parted
+        std::vector<std::vector<Bearer>> bearer;  // of each force's points; empty: themselves
         Pieces pieces;
         std::vector<std::vector<OpenFace>> face;  // of each load
 
         template <typename Io>
         void visit(Io& io) {
-            io(is_off, pieces, face);
+            io(is_off, bearer, pieces, face);
         }
     };
     // Those laid open on pieces that it presses on all round. Wherever a load's points are listed
@@ -103,7 +105,8 @@ class LoadSet {
     // On each point of a load [N].
     std::vector<Vec3> forces_of(const Load& load, double strength, const Aggregate& matter) const;
 
-    // Of each of a load's points that it acts on; 0: it does not [m2].
+    // Of each of a load's points that it acts on, what sums are weighed by; 0: it does not [m2, or
+    // of a force, which was spread over what was there as it began: N].
     std::vector<double> areas_of(const Load& load, const Aggregate& matter) const;
     std::vector<Vec3> positions_of(const Load& load, const Aggregate& matter) const;
     // Of those that carry the n-th of a load's points, what is not left alone: its weights' sum,
@@ -143,7 +146,13 @@ class LoadSet {
     void balance(const Load& load, const Aggregate& matter, const std::vector<double>& area,
                  std::vector<Vec3>& force) const;
 
-    void renew_last(const Aggregate& matter, const Parted* before);
+    // That the n-th of a load's points acts on.
+    SurfacePoints::Carriers carriers(const Load& load, std::size_t n,
+                                     const Aggregate& matter) const;
+
+    // `force_at`: by force and point, where they acted before.
+    void renew_last(const Aggregate& matter, const Parted* before,
+                    const std::vector<std::vector<Vec3>>& force_at);
 
     bool pushes(const Load& load) const { return load.body == body_; }
     // Calls act(l, load) for each load on this body.
