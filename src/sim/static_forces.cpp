@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/static_forces.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/relaxation_passes.h"
@@ -13,16 +14,23 @@ namespace {
 constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it holds anything back
 // Least push, over E a^2, that the residual is measured by: about a tenth of E I / L^2 of a bar 4
 // cells thick and 10 times as long (an estimate). At the first touch of a slender body the true
-// push is next to nothing.
+// push is next to nothing. E is the softest matter's: what is stiffer bears no more than that
+// gives.
 constexpr double kLeastPush = 1e-3;
 // Forces that rounded places leave in a body at rest add up to about this many times what each
 // particle's stiffness makes of its own (measured).
 constexpr double kRoundings = 16;
 
+double least_modulus(const Aggregate& body) {
+    double least = body.material.young_modulus;
+    for (const Material& inset : body.inset) least = std::min(least, inset.young_modulus);
+    return least;
+}
+
 }  // namespace
 
 double least_push(const Aggregate& body) {
-    return kLeastPush * body.mean_modulus() * body.lattice.spacing * body.lattice.spacing;
+    return kLeastPush * least_modulus(body) * body.lattice.spacing * body.lattice.spacing;
 }
 
 StaticForces::StaticForces(Aggregate& body, const Apparatus& machine, const SimSettings& settings)
