@@ -33,7 +33,8 @@ FractureLaws::FractureLaws(const Aggregate& matter) {
         const double onset = law_.back().onset;
         strength_.back() = onset * of.young_modulus;
         least_onset_ = break_any() ? std::min(least_onset_, onset) : onset;
-        if (!std::isfinite(of.yield_stress)) snaps_at_.back() = law_.back().broken;
+        // What breaks before it can flow is as brittle as what never flows.
+        if (!(of.yield_stress < of.strength)) snaps_at_.back() = law_.back().broken;
     }
     whole_.holds = !breaks(0);
     if (matter.inset.empty() || !break_any()) return;

@@ -46,7 +46,7 @@ class FractureLaws {
     // Whether what hangs by any connection can snap.
     bool snap_any() const;
     // The strain at which what hangs by the connection snaps; infinite where it holds on, or
-    // yields: what flows bends.
+    // yields below its strength: what flows bends.
     double snaps_at(int direction, ParticleId lower) const;
 
   private:

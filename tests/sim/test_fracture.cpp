@@ -289,13 +289,28 @@ TEST_CASE("a thread of brittle matter snaps when it is bent by more than it can 
               Approx(lost).margin(1e-12 + 1e-9 * before));
     }
     Material ductile = material;
-    ductile.yield_stress = 1e9;
+    ductile.yield_stress = 0.9 * material.strength;
     Thread hangs(ductile, 1);
     CHECK_FALSE(LatticeForces(hangs.matter).may_snap());
     Thread turned(material, 0);
     place(turned.matter, {Quat(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized())), Vec3(1, 0, 0)});
     LatticeForces forces(turned.matter);
     CHECK(forces.snap(turned.matter).broken == 0);
+}
+
+TEST_CASE("a thread that would break before it flows snaps as one that never flows") {
+    const Material brittle_one = brittle(GENERATE(Mechanics::cells, Mechanics::springs));
+    for (const double share : {1., 1.5, 100.}) {
+        Material flows_late = brittle_one;
+        flows_late.yield_stress = share * brittle_one.strength;
+        Thread with(flows_late, 1), without(brittle_one, 1);
+        LatticeForces forces(with.matter), same(without.matter);
+        CHECK(forces.may_snap());
+        for (int n = 0; n < 20; ++n) {
+            CHECK(forces.snap(with.matter).broken == same.snap(without.matter).broken);
+        }
+        CHECK(find_pieces(with.matter).count == 2);
+    }
 }
 
 TEST_CASE("damping that is slow to yield does not hold a crack together") {
