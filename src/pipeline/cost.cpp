@@ -144,10 +144,12 @@ double softest_give(const SceneSpec& scene, const std::vector<InputMesh>& input,
 // one.
 void note_more_steps(const SceneSpec& scene, RunCost& cost) {
     for (const Solver solver : {Solver::energy_stepped, Solver::euler}) {
-        const double more = more_steps(scene, solver);
-        const auto by = [&](const StageSpec& stage) { return stage.sim.solver == solver; };
-        const auto first = std::find_if(scene.stage.begin(), scene.stage.end(), by);
-        if (first == scene.stage.end() || more < kFarMore) continue;
+        const auto takes_more = [&](const StageSpec& stage) {
+            return stage.sim.solver == solver && more_steps(scene, stage) >= kFarMore;
+        };
+        const auto first = std::find_if(scene.stage.begin(), scene.stage.end(), takes_more);
+        if (first == scene.stage.end()) continue;
+        const double more = more_steps(scene, *first);
         cost.note.push_back(fmt::format(
             "{}: solver = \"{}\" takes about {:.0f} times as many steps as \"explicit\"{}",
             first->name, name_of(solver), more,

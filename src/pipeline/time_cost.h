@@ -41,7 +41,7 @@ StageTime stage_time(const SceneSpec& scene, const StageSpec& stage, const WorkL
                      long equilibria);
 
 // Of a solver that takes far more than explicit steps, how many times as many, about.
-double more_steps(const SceneSpec& scene, Solver solver);
+double more_steps(const SceneSpec& scene, const StageSpec& stage);
 
 // Skins that are made anew, and all files of a run but for pictures [byte].
 CostRange writing_time(const SceneSpec& scene, double frames, const CostRange& bytes,

@@ -79,6 +79,13 @@ TEST_CASE("the steps that a run takes lie in the range that check tells") {
         holds(by_euler, rubber + "poisson_ratio = " + ratio + "\n");
     }
     holds(by_euler, rubber + "damping_ratio = 0.25\n");
+    const std::string by_energy =
+        "floor\"\nsolver = \"energy-stepped\"\ngravity = 9.81\nduration = \"8 ms\"\n"
+        "drop = \"0.1 mm\"\n";
+    for (const char* ratio : {"0.005", "0.05", "0.3"}) {
+        holds(by_energy, rubber + "damping_ratio = " + ratio + "\n");
+    }
+    holds("twist\"\nsolver = \"energy-stepped\"\nduration = \"4 ms\"\n", rubber);
     holds("bend\"\nsolver = \"implicit\"\nangle = \"5 deg\"\nduration = \"20 ms\"\n", rubber);
 }
 
