@@ -117,9 +117,8 @@ std::string fracture_text(const StageEnd& end, double by_fracture, double share)
     });
     return fmt::format(
         "the energy books do not close: fracture has given {:.3g} J, {:.3g} % of the energy "
-        "involved "
-        "is from nowhere, and it should only take some; cells beside a break hold more as springs "
-        "than they did before{}: try smaller cells",
+        "involved is from nowhere, and it should only take some; cells beside a break hold more "
+        "as springs than they did before{}: try smaller cells",
         by_fracture, 100 * share, mixed ? ", those of two unlike materials most" : "");
 }
 

@@ -193,14 +193,23 @@ TEST_CASE("a skin that swells though its matter flows is told of") {
     CHECK_FALSE(told());
 }
 
+namespace {
+
+// Of tools' work this entry of the books took so much, and the rest is stored.
+std::string told_of_taken(CutBar& bar, double work, double Books::*entry, double energy) {
+    FrameReport last;
+    last.pieces = 2;
+    last.work = work, last.elastic = work - energy, last.*entry = energy;
+    return bar.told_of(bar.reading.scene->stage[0], last, 1);
+}
+
+}  // namespace
+
 TEST_CASE("energy that flow gives is from nowhere, but what a back stress has stored") {
     CutBar bar("copper");
     const double work = 1e-6 * bar.stiffness();
-    const auto told = [&](double plastic) {
-        FrameReport last;
-        last.pieces = 2;
-        last.work = work, last.elastic = work - plastic, last.plastic = plastic;
-        return bar.told_of(bar.reading.scene->stage[0], last, 1);
+    const auto told = [&](double energy) {
+        return told_of_taken(bar, work, &FrameReport::plastic, energy);
     };
     CHECK_FALSE(is_open(told(0.3 * work)));
     CHECK_FALSE(is_open(told(-0.01 * work)));
@@ -216,11 +225,8 @@ TEST_CASE("energy that flow gives is from nowhere, but what a back stress has st
 TEST_CASE("energy that fracture gives is told as what it is") {
     CutBar bar("glass");
     const double work = 1e-6 * bar.stiffness();
-    const auto told = [&](double fracture) {
-        FrameReport last;
-        last.pieces = 2;
-        last.work = work, last.elastic = work - fracture, last.fracture = fracture;
-        return bar.told_of(bar.reading.scene->stage[0], last, 1);
+    const auto told = [&](double energy) {
+        return told_of_taken(bar, work, &FrameReport::fracture, energy);
     };
     CHECK_FALSE(is_open(told(0.3 * work)));
     CHECK(is_open(told(-0.3 * work)));

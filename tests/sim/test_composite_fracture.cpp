@@ -12,6 +12,7 @@
 #include "sim/moving_body.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/halved_cell.h"
 #include "tests/sim/pulled_bar.h"
 
 using namespace swage;
@@ -137,12 +138,7 @@ TEST_CASE("a soft core of a stiff shell carries by its own stiffness once that h
                 const Vec3i site = m.lattice.cell_site(CellId(c));
                 const bool above = site.y() == 6 && site.z() >= 2 && site.z() < 6;
                 if (!above) continue;
-                m.mixed_cell.push_back(
-                    {.cell = CellId(c),
-                     .material = {0, 1},
-                     .fill = {0.5f, 0.5f},
-                     .centroid = {Eigen::Vector3f(0, 0.25f, 0), Eigen::Vector3f(0, -0.25f, 0)},
-                     .normal = Eigen::Vector3f::UnitY()});
+                m.mixed_cell.push_back(halved_cell(CellId(c)));
             }
             bar.start();
         }

@@ -3,6 +3,7 @@
 #include "sim/lattice_forces.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/halved_cell.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -25,12 +26,7 @@ TEST_CASE("cells of two like materials that have flowed break as those of one do
             m.inset.push_back(metal);
             m.cell_material.assign(m.cell_fill.size(), 0);
             for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
-                m.mixed_cell.push_back(
-                    {.cell = CellId(c),
-                     .material = {0, 1},
-                     .fill = {0.5f, 0.5f},
-                     .centroid = {Eigen::Vector3f(0, 0.25f, 0), Eigen::Vector3f(0, -0.25f, 0)},
-                     .normal = Eigen::Vector3f::UnitY()});
+                m.mixed_cell.push_back(halved_cell(CellId(c)));
             }
         }
         LatticeForces lattice(m, Excess::lives_on);
