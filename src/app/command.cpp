@@ -50,7 +50,9 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
         ->group(kCommonOptions);
     auto* quiet = command->add_flag("-q,--quiet", common.quiet, "report only what is wrong")
                       ->group(kCommonOptions);
-    command->add_flag("-v,--verbose", common.verbose, "report more")
+    command
+        ->add_flag("-v,--verbose", common.verbose,
+                   "report more, as what each frame took the solver")
         ->excludes(quiet)
         ->group(kCommonOptions);
     command->footer("\nExamples:\n" + examples);

@@ -12,6 +12,7 @@
 #include "pipeline/body_table.h"
 #include "pipeline/boundary_note.h"
 #include "pipeline/curves.h"
+#include "pipeline/frame_account.h"
 #include "pipeline/limit_watch.h"
 #include "pipeline/machine_place.h"
 #include "pipeline/piece_fields.h"
@@ -264,6 +265,7 @@ class StageRun {
         if (body_table_) body_table_->add(number, bodies_, last_);
         totals_.add(last_, machine_.apparatus.tool.size());
         for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
+        log_verbose("{}, frame {}: {}", stage_.name, number, frame_account(last_));
     }
 
     // The machine has reached a limit, and goes on without coming any farther.

@@ -225,3 +225,26 @@ TEST_CASE("info repeats what a run warned of") {
     put_text(run / "run.json", json_text(record));
     CHECK(run_swage({"info", run.string()}).code == 5);
 }
+
+TEST_CASE("who asks for more is told what each frame took the solver") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    const auto told = [&](const char* how, const char* run) {
+        const Outcome outcome = run_swage(
+            {"run", how, scene.string(), "--no-render", "--out", (scratch.path() / run).string()});
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+        return outcome.err;
+    };
+    const std::string much = told("--verbose", "much");
+    const Json stage = parse_json(bytes_of(scratch.path() / "much/run.json")).at("stages").at(0);
+    long iterations = 0;
+    for (int frame = 2; frame <= 4; ++frame) {
+        const std::string start = fmt::format("bend, frame {}: ", frame);
+        const std::size_t at = much.find(start);
+        REQUIRE(at != std::string::npos);
+        iterations += std::stol(much.substr(at + start.size()));
+    }
+    CHECK(iterations == stage.at("iterations").get<long>());
+    CHECK(told("--threads=1", "usual").find("frame 2: ") == std::string::npos);
+}
