@@ -50,11 +50,12 @@ inline bool next_line(std::string_view& text, std::string_view& line) {
 inline bool to_number(std::string_view word, double& value) {
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (end != word.data() + word.size()) return false;
     if (error == std::errc::result_out_of_range) {  // 1e-400 is 0, 1e400 infinite
         value = std::strtod(std::string(word).c_str(), nullptr);
         return true;
     }
-    return error == std::errc() && end == word.data() + word.size();
+    return error == std::errc();
 }
 
 inline bool to_integer(std::string_view word, long long& value) {

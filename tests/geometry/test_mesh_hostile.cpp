@@ -82,6 +82,7 @@ TEST_CASE("a broken OBJ is refused with its line") {
     says(refusal(folder.write("l.obj", "v 1e30 0 0\n" + v + "f 1 2 3\n")), "unreasonably large");
     says(refusal(folder.write("m.obj", "v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n")), "in size");
     says(refusal(folder.write("n.obj", v + "f 1 2 99999999999999999999\n")), "not an index");
+    says(refusal(folder.write("p.obj", "v 1e-400x 0 0\n" + v + "f 1 2 3\n")), "not a number");
     // A good mesh whose material library is a folder is still a good mesh.
     std::filesystem::create_directory(folder / "dir.mtl");
     CHECK(refusal(folder.write("o.obj", "mtllib dir.mtl\n" + v + "f 1 2 3\n")).empty());
