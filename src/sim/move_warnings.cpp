@@ -68,8 +68,8 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
     }
     if (outcome.rounded > 0) {
         warning.emplace_back(
-            fmt::format("loads are so small beside the matter's stiffness that the places of "
-                        "particles, to sixteen digits, leave up to {:.1g} N out of balance",
+            fmt::format("loads are so small for matter this stiff and this far from the origin "
+                        "that its places, to sixteen digits, leave up to {:.1g} N out of balance",
                         outcome.rounded));
     }
     if (std::any_of(outcome.body.begin(), outcome.body.end(),
