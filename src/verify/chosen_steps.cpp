@@ -42,10 +42,7 @@ struct Drop {
         settings.contact_stiffness = stiffness / (kModulus * kSide);
     }
     Drive at(double time) const {
-        Drive drive;
-        drive.time = time;
-        drive.world_from_tool.push_back({Quat::Identity(), {0, -0.5, 0}});
-        return drive;
+        return at_time(time, {{Quat::Identity(), {0, -0.5, 0}}});
     }
 };
 

@@ -56,12 +56,7 @@ void ball_drop(bool brief, Values& values) {
         settings.solver = Solver::explicit_steps;
         settings.gravity = {0, -kGravity, 0};
         settings.contact_stiffness = 0.015 / across;  // of one stiffness at any resolution
-        const auto at_time = [](double time) {
-            Drive drive;
-            drive.time = time;
-            drive.world_from_tool.push_back({Quat::Identity(), {0, -0.5, 0}});
-            return drive;
-        };
+        const std::vector<Pose> floor{{Quat::Identity(), {0, -0.5, 0}}};
         Simulation simulation(body, apparatus, settings);
         const double start = height(body), given = body.mass() * kGravity * kDrop;
         std::vector<double> impact, apex;
@@ -69,7 +64,7 @@ void ball_drop(bool brief, Values& values) {
         bool touched = false;
         for (int n = 0; n < 3200; ++n) {
             const FrameReport r =
-                simulation.advance(at_time(n * kSlice), at_time((n + 1) * kSlice));
+                simulation.advance(at_time(n * kSlice, floor), at_time((n + 1) * kSlice, floor));
             const bool touches = r.load[0].contacts > 0;
             if (touches && !touched) impact.push_back((n + 0.5) * kSlice);
             if (!touches && touched) {

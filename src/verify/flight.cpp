@@ -17,12 +17,6 @@ SimSettings explicit_settings() {
     return settings;
 }
 
-Drive at_time(double time) {
-    Drive drive;
-    drive.time = time;
-    return drive;
-}
-
 // A cube of 0.1 m that flies along x through a medium, without weight or from rest by its weight.
 struct Flight {
     static constexpr double kSide = 0.1, kSpeed = 10, kGravity = 9.81;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/noise.h"
 #include "sim/lattice_forces.h"
 #include "verify/case.h"
 #include "verify/stand.h"
@@ -82,14 +83,6 @@ void invariance(bool, Values& values) {
         absolute("sum of torques / sum of sizes", kAcross, 0, torque.norm() / torques, 1e-13));
 }
 
-// A number from -1 to 1 that belongs to a particle and a component.
-double scatter(std::size_t n) {
-    std::uint64_t z = (n + 1) * 0x9e3779b97f4a7c15ull;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return double((z ^ (z >> 31)) >> 11) / double(1ull << 52) - 1;
-}
-
 void energy_slope(bool, Values& values) {
     for (const auto& [elasticity, name] : {std::pair(Elasticity::hencky, "Hencky"),
                                            std::pair(Elasticity::neo_hookean, "neo-Hookean"),
@@ -101,7 +94,7 @@ void energy_slope(bool, Values& values) {
         std::size_t n = 0;
         place(bar, [&](const Vec3& x) {
             n += 3;
-            return Vec3(x + 0.08 * a * Vec3(scatter(n), scatter(n + 1), scatter(n + 2)));
+            return Vec3(x + 0.08 * a * Vec3(noise(n), noise(n + 1), noise(n + 2)));
         });
         const Vec3Array force = forces_of(bar);
         LatticeForces lattice(bar);

@@ -172,15 +172,10 @@ void taylor_bar(bool brief, Values& values) {
         wall.tool.push_back({"wall", BoxShape{Vec3::Constant(0.1), 0}, 0});
         SimSettings settings;
         settings.solver = Solver::explicit_steps;
-        const auto at_time = [&](double time) {
-            Drive drive;
-            drive.time = time;
-            drive.world_from_tool.push_back({Quat::Identity(), {-0.05 - 0.5 * kLength, 0, 0}});
-            return drive;
-        };
+        const std::vector<Pose> there{{Quat::Identity(), {-0.05 - 0.5 * kLength, 0, 0}}};
         Simulation simulation(bar, wall, settings);
         const double given = 0.5 * bar.mass() * kSpeed * kSpeed;
-        const FrameReport r = simulation.advance(at_time(0), at_time(kTime));
+        const FrameReport r = simulation.advance(at_time(0, there), at_time(kTime, there));
         double low = 0, high = 0;
         std::array<double, 16> foot{};  // by direction
         for (std::size_t p = 0; p < bar.surface.size(); ++p) {

@@ -26,10 +26,6 @@ double plastic_share(double curvature) {
     return y > 1 ? 1 / y : 1.5 * (1 - y * y / 3);
 }
 
-double middle_curvature(const Aggregate& matter) {
-    return turn_rate(matter, Vec3::UnitX(), 1.5, 0.5, -Vec3::UnitY());
-}
-
 // Both end faces of a bar on one circle through the origin.
 Drive bent(const Stand& stand, double curvature, double length = kLength) {
     Drive to = stand.drive;

@@ -112,10 +112,6 @@ class Section {
     std::vector<Fibre> layer_{200};
 };
 
-double middle_curvature(const Aggregate& matter) {
-    return turn_rate(matter, Vec3::UnitX(), 1.5, 0.5, -Vec3::UnitY());
-}
-
 // A square bar bent to five times first yield, straightened and bent as far the other way.
 void bent_and_back(bool brief, Values& values) {
     constexpr double kLength = 12, kYieldCurvature = 2 * kYield;

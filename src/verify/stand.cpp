@@ -108,6 +108,13 @@ Vec3 mean_move(const Aggregate& matter, const std::vector<int>& points) {
     return sum / area_of(matter, points);
 }
 
+Drive at_time(double time, const std::vector<Pose>& world_from_tool) {
+    Drive drive;
+    drive.time = time;
+    drive.world_from_tool = world_from_tool;
+    return drive;
+}
+
 Stand::Stand(Aggregate body, double tolerance, const Vec3& gravity) : matter(std::move(body)) {
     apparatus.name = "verify";
     settings_.tolerance = tolerance;
@@ -249,6 +256,10 @@ double turn_rate(const Aggregate& matter, const Vec3& along, double s, double ha
     const Slice low = slice_of(matter, along, -s, half, about);
     const Slice high = slice_of(matter, along, s, half, about);
     return (high.angle - low.angle) / (high.place - low.place);
+}
+
+double middle_curvature(const Aggregate& bar) {
+    return turn_rate(bar, Vec3::UnitX(), 1.5, 0.5, -Vec3::UnitY());
 }
 
 }  // namespace swage

@@ -28,6 +28,9 @@ double area_of(const Aggregate& matter, const std::vector<int>& points);
 Vec3 mean_position(const Aggregate& matter, const std::vector<int>& points);
 Vec3 mean_move(const Aggregate& matter, const std::vector<int>& points);  // since molding
 
+// Of what no grip and no load moves; tools stand where they are.
+Drive at_time(double time, const std::vector<Pose>& world_from_tool = {});
+
 class Stand {
   public:
     // Tolerance: of the forces at rest, over the largest push.
@@ -68,6 +71,8 @@ Slice slice_of(const Aggregate& matter, const Vec3& along, double s, double half
 // Turn per length about `about` between slices at -s and s.
 double turn_rate(const Aggregate& matter, const Vec3& along, double s, double half,
                  const Vec3& about);
+// Of a bar along x that is bent about y.
+double middle_curvature(const Aggregate& bar);
 
 // Deformation gradient that fits the slice's surface best. Particles of partly filled cells lie
 // outside the body and tell less of it.
