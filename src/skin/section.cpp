@@ -12,6 +12,8 @@
 #include <limits>
 #include <map>
 
+#include "skin/flat_segment.h"
+
 namespace swage {
 
 namespace {
@@ -66,10 +68,7 @@ double distance_to_segments(const Section& section, const Vec2& p) {
     double least = std::numeric_limits<double>::infinity();
     for (const auto* lines : {&section.segment, &section.line}) {
         for (const auto& [a, b] : *lines) {
-            const Vec2 way = section.point[b] - section.point[a], from = p - section.point[a];
-            const double length2 = way.squaredNorm();
-            const double t = length2 > 0 ? std::clamp(from.dot(way) / length2, 0.0, 1.0) : 0.0;
-            least = std::min(least, (from - t * way).squaredNorm());
+            least = std::min(least, distance2_to_segment(p, section.point[a], section.point[b]));
         }
     }
     return std::sqrt(least);

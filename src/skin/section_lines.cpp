@@ -9,6 +9,8 @@
 #include <optional>
 #include <set>
 
+#include "skin/flat_segment.h"
+
 namespace swage {
 
 namespace {
@@ -16,15 +18,6 @@ namespace {
 using Ends = std::pair<int, int>;
 
 constexpr int kRounds = 12;  // until no line passes a point or another line; more are rare
-
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
-
-// How far along a segment the place nearest to a point is; 0 to 1.
-double share_along(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const Vec2 way = b - a;
-    const double length2 = way.squaredNorm();
-    return length2 > 0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0.0;
-}
 
 // Of the first, where they cross inside of both.
 std::optional<double> crossing(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
@@ -126,7 +119,7 @@ class Drawing {
         double least = reach_ * reach_;
         for (std::size_t s = 0; s < segment_.size(); ++s) {
             const Vec2 &a = point_[segment_[s][0]], &b = point_[segment_[s][1]];
-            const double d2 = (a + share_along(p, a, b) * (b - a) - p).squaredNorm();
+            const double d2 = distance2_to_segment(p, a, b);
             if (d2 < least) least = d2, segment = static_cast<int>(s);
         }
         if (segment < 0) return add({-1, 0}, p);

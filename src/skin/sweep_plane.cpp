@@ -5,19 +5,11 @@
 #include <map>
 
 #include "geometry/disjoint_sets.h"
+#include "skin/flat_segment.h"
 
 namespace swage {
 
 namespace {
-
-double distance2_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const Vec2 way = b - a;
-    const double length2 = way.squaredNorm();
-    const double t = length2 > 0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0.0;
-    return (p - a - t * way).squaredNorm();
-}
-
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 bool holds(const std::array<Vec2, 3>& t, const Vec2& p) {
     const double a = cross(t[1] - t[0], p - t[0]);
