@@ -25,11 +25,15 @@ constexpr int kSamples = 4;
 constexpr std::size_t kMostMultisampledTriangles = 60'000;
 constexpr long kMostMultisampledPixels = 4096l * 4096l;
 
-void grow(Box& box, const DrawItem& item) {
+constexpr double kShadowReach = 4;  // [stage] about the action, in which shadows fall on it
+
+Box world_box(const DrawItem& item) {
+    Box box;
     for (const Vec3& p : item.position ? *item.position : item.mesh->position) {
         const Vec3 world = item.world_from_mesh * p;
         if (world.allFinite()) box.grow(world);
     }
+    return box;
 }
 
 // The largest that lies in a flat item: middle and radius in the stage.
@@ -105,7 +109,8 @@ struct Renderer::Parts {
         gl.Finish();
     }
 
-    std::vector<Drawable> prepare(const Picture& picture, Box& shown, Box& casting);
+    bool extend(Extent& extent, const DrawItem& item, const Vec3& eye) const;
+    std::vector<Drawable> prepare(const Picture& picture, const Vec3& eye, Extent& extent);
     void draw_surfaces(const std::vector<Drawable>& drawables, bool ground, const Target& target,
                        const SurfaceShaders& by);
     const Target& target_of(PictureTargets& picture, bool multisampled);
@@ -120,12 +125,38 @@ struct Renderer::Parts {
     Image draw(const Picture& picture, Layers* layers);
 };
 
-std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& shown, Box& casting) {
+// Returns false for what is not to be drawn: a floor without end, which from below hides everything.
+bool Renderer::Parts::extend(Extent& extent, const DrawItem& item, const Vec3& eye) const {
+    if (item.endless) {
+        const glm::vec4 plane = plane_of(item, stage);
+        if (plane.y > 0) {
+            const double above = Vec3(plane.x, plane.y, plane.z).dot(eye - stage.center);
+            const double gap = above - plane.w * stage.radius;
+            if (gap > 0) extent.nearest = std::min(extent.nearest, gap);
+            return gap > 0;
+        }
+    }
+    Box own = world_box(item);
+    if (own.empty()) return true;
+    extent.shown.grow(own);
+    extent.nearest = std::min(extent.nearest, own.gap_to(eye));
+    if (item.endless) return true;
+    // A tool that waits far away, or is very long, would leave nothing of the map to the action.
+    if (!action_bounds.empty()) {
+        const Box reach = action_bounds.widened(kShadowReach * stage.radius);
+        own = {own.low.cwiseMax(reach.low), own.high.cwiseMin(reach.high)};
+    }
+    if (!own.empty()) extent.casting.grow(own);
+    return true;
+}
+
+std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, const Vec3& eye,
+                                               Extent& extent) {
     meshes.begin_picture();
     std::vector<Drawable> drawables;
     for (const DrawItem& item : picture.item) {
         if (item.mesh == nullptr || item.mesh->triangle.empty()) continue;
-        grow(item.endless ? shown : casting, item);
+        if (!extend(extent, item, eye)) continue;
         // Read now: loading one in the middle of a pass would unbind what the pass has bound.
         if (item.material_override) textures.texture(*item.material_override);
         for (const SurfaceMaterial& material : item.mesh->material) {
@@ -135,8 +166,8 @@ std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& show
         const glm::mat4 stage_from_mesh = stage.from_mesh(item.world_from_mesh, mesh.origin);
         drawables.push_back({.mesh = &mesh, .item = &item, .stage_from_mesh = stage_from_mesh});
     }
-    if (casting.empty()) casting.grow(stage.center);
-    shown.grow(casting);
+    if (extent.casting.empty()) extent.casting.grow(stage.center);
+    extent.shown.grow(extent.casting);
     return drawables;
 }
 
@@ -324,27 +355,26 @@ std::vector<float> Renderer::Parts::draw_light(const std::vector<Drawable>& draw
 
 Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
     canvas.make_current();
-    Box casting = action_bounds, shown;
+    const View view = camera.at(picture.film_share);
+    Extent extent{{}, action_bounds};
     std::vector<Drawable> drawables;
-    timed("send", [&] { drawables = prepare(picture, shown, casting); });
+    timed("send", [&] { drawables = prepare(picture, view.eye, extent); });
     std::size_t triangles = 0;
     for (const Drawable& d : drawables) triangles += d.mesh->split.index.size() / 3;
     const bool multisampled =
         triangles <= kMostMultisampledTriangles &&
         static_cast<long>(settings.width) * settings.height <= kMostMultisampledPixels;
 
-    const View view = camera.at(picture.film_share);
-    const bool eye_is_outside = !shown.contains(view.eye);
+    const bool eye_is_outside = !extent.shown.contains(view.eye);
     for (Drawable& d : drawables) d.culls = d.mesh->closed && eye_is_outside;
-    const FrameBlock frame =
-        frame_block(settings, stage, shown, casting, view, ground_height, front);
+    const FrameBlock frame = frame_block(settings, stage, extent, view, ground_height, front);
     gl.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer.id());
     gl.BufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);
     gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer.id());
     // From below the ground would hide everything.
     const bool ground = settings.ground && view.eye.y() > ground_height &&
-                        std::none_of(drawables.begin(), drawables.end(),
-                                     [](const Drawable& d) { return d.item->endless; });
+                        std::none_of(picture.item.begin(), picture.item.end(),
+                                     [](const DrawItem& item) { return item.endless; });
 
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);

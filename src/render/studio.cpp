@@ -2,6 +2,7 @@
 #include "render/studio.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace swage {
@@ -13,6 +14,10 @@ constexpr double kFillAzimuth = 0.95, kFillElevation = 0.25;
 constexpr double kRimAzimuth = 2.55, kRimElevation = 0.55;
 
 constexpr double kGroundFade = 2.2, kGroundEnd = 9.0;  // [stage]
+// Depth has so many digits: what lies farther behind the action is not drawn, nor what is nearer
+// to the eye than this share of the farthest.
+constexpr double kFarthest = 100;  // [stage]
+constexpr double kNearest = 1e-4;
 
 Vec3 towards(double azimuth, double elevation) { return orbit_rotation(azimuth, elevation).col(2); }
 
@@ -53,6 +58,17 @@ double nearest_ground(const View& view, const Lens& lens, double ground) {
     return nearest;
 }
 
+// Nothing that is drawn is nearer or farther.
+DepthRange depth_drawn(const RenderSettings& settings, const Stage& stage, const Extent& extent,
+                       const View& view, const Lens& lens, double ground) {
+    const double behind = depth_range(stage.box(extent.shown), view).far;
+    const double far = std::min(behind, view.eye.norm() + kFarthest) + kGroundEnd;
+    const double slant = std::hypot(1.0, lens.tangent_x, lens.tangent_y);
+    double near = extent.nearest / (stage.radius * slant);
+    if (settings.ground) near = std::min(near, nearest_ground(view, lens, ground));
+    return {std::clamp(0.9 * near, kNearest * far, 0.5 * far), far};
+}
+
 }  // namespace
 
 Lamps lamps_of(const LightPlace& light, double front) {
@@ -84,19 +100,13 @@ glm::mat4 Stage::from_mesh(const Pose& world_from_mesh, const Vec3& origin) cons
                       glm::dvec3(1 / radius));
 }
 
-FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const Box& shown,
-                       const Box& casting, const View& world_view, double ground_height,
-                       double front) {
+FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const Extent& extent,
+                       const View& world_view, double ground_height, double front) {
     View view = world_view;
     view.eye = (view.eye - stage.center) / stage.radius;
     const Lens lens = lens_of(settings);
-    DepthRange depth = depth_range(stage.box(shown), view);
     const double ground = (ground_height - stage.center.y()) / stage.radius;
-    if (settings.ground) {
-        depth.far += kGroundEnd;
-        depth.near =
-            std::clamp(0.9 * nearest_ground(view, lens, ground), 1e-4 * depth.far, depth.near);
-    }
+    const DepthRange depth = depth_drawn(settings, stage, extent, view, lens, ground);
 
     FrameBlock frame;
     const glm::dmat4 looking = view_from_world(view);
@@ -115,7 +125,7 @@ FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const
     const bool is_clear = settings.background == Background::transparent;
     frame.ground = glm::dvec4(ground, kGroundFade, kGroundEnd, is_clear ? 1 : 0);
 
-    Box mapped = stage.box(casting);
+    Box mapped = stage.box(extent.casting);
     const Vec3 middle = mapped.center();
     if (settings.ground) mapped.grow({middle.x(), ground, middle.z()});
     const ShadowBox map = fit_shadow(

@@ -3,6 +3,8 @@
 // told of it. Mathematics only.
 #pragma once
 
+#include <limits>
+
 #include "render/camera.h"
 
 namespace swage {
@@ -36,10 +38,16 @@ Lamps lamps_of(const LightPlace& light, double front);
 // The azimuth of the film's first view; straight down there is none, and any will do.
 double front_of(const View& first);
 
+// Where in the world that is which a picture shows, but for what has no end.
+struct Extent {
+    Box shown;    // all of it; never empty
+    Box casting;  // the action, and beside it what may cast a shadow there
+    double nearest = std::numeric_limits<double>::infinity();  // to the eye [m], or less
+};
+
 // `front` is the azimuth of the film's first view: the lights stand about it and stay in the
-// world. `shown` and `casting` are the boxes of what is drawn and of what casts a shadow, never
-// empty.
-FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const Box& shown,
-                       const Box& casting, const View& view, double ground_height, double front);
+// world.
+FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const Extent& extent,
+                       const View& view, double ground_height, double front);
 
 }  // namespace swage
