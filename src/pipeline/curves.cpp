@@ -102,6 +102,17 @@ constexpr CountColumn kCountColumns[] = {
     {"steps taken back", [](const FrameReport& report) { return report.rejected; }},
 };
 
+// A tool may go farther back from its work than it went into it.
+Vec3 farthest_at_work(const LoadCurve& load) {
+    Vec3 farthest = Vec3::Zero(), of_all = Vec3::Zero();
+    for (std::size_t row = 0; row < load.gone.size(); ++row) {
+        const Vec3& gone = load.gone[row];
+        if (gone.norm() > of_all.norm()) of_all = gone;
+        if (!load.force[row].isZero(0) && gone.norm() > farthest.norm()) farthest = gone;
+    }
+    return farthest.isZero(0) ? of_all : farthest;
+}
+
 }  // namespace
 
 StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
@@ -209,10 +220,7 @@ std::string csv_text(const StageCurves& curves) {
 
 std::vector<double> stroke_of(const LoadCurve& load) {
     constexpr double kStraight = 0.05;  // of the way
-    Vec3 farthest = Vec3::Zero();
-    for (const Vec3& gone : load.gone) {
-        if (gone.norm() > farthest.norm()) farthest = gone;
-    }
+    const Vec3 farthest = farthest_at_work(load);
     std::vector<double> stroke;
     if (farthest.isZero()) return stroke;
     const Vec3 along = farthest.normalized();
@@ -228,6 +236,7 @@ std::vector<LoadPeaks> peaks_of(const StageCurves& curves) {
     std::vector<LoadPeaks> all;
     for (const LoadCurve& load : curves.load()) {
         LoadPeaks peaks{load.name, {0, curves.frame().front()}, {0, curves.frame().front()}};
+        peaks.stroke = farthest_at_work(load).norm();
         for (std::size_t row = 0; row < curves.rows(); ++row) {
             const auto raise = [&](Peak& peak, double size) {
                 if (size > peak.size) peak = {size, curves.frame()[row]};
@@ -241,7 +250,6 @@ std::vector<LoadPeaks> peaks_of(const StageCurves& curves) {
                     peaks.axial = {axial, curves.frame()[row]};
                 }
             }
-            peaks.stroke = std::max(peaks.stroke, load.gone[row].norm());
             if (std::abs(load.turn[row]) > std::abs(peaks.turn)) peaks.turn = load.turn[row];
         }
         all.push_back(peaks);

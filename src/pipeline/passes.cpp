@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -43,12 +44,20 @@ std::vector<ExrChannel> channels_of(const std::array<const char*, 4>& names, boo
 }  // namespace
 
 std::vector<MatteColor> matte_colors(std::size_t count) {
+    constexpr std::uint32_t kSteps = 16, kScatter = 0x9e3779;  // odd: each code comes once
     std::vector<MatteColor> colors = {{0, 0, 0}, {128, 128, 128}};
     std::set<MatteColor> taken(colors.begin(), colors.end());
     for (std::size_t n = colors.size(); n < count; ++n) {
         const double turned = kGolden * static_cast<double>(n);
         MatteColor color = color_of(turned - std::floor(turned), n % 2 == 0 ? 255 : 150);
-        while (!taken.insert(color).second) color[n % 3] = std::uint8_t(color[n % 3] + 1);
+        for (std::uint32_t k = 0; !taken.insert(color).second; ++k) {
+            if (k < kSteps) {
+                color[n % 3] = std::uint8_t(color[n % 3] + 1);
+            } else {  // of thousands: any that is left
+                const std::uint32_t code = (static_cast<std::uint32_t>(n) + k) * kScatter;
+                for (int c : {0, 1, 2}) color[c] = std::uint8_t(code >> 8 * c);
+            }
+        }
         colors.push_back(color);
     }
     colors.resize(count);

@@ -204,6 +204,24 @@ TEST_CASE("the way of a load leaves out what its place jumps by as it acts on so
     CHECK(peaks_of(curves)[0].stroke == Approx(0.3));
 }
 
+TEST_CASE("a press that rises farther than it went down has gone the way down") {
+    StageCurves curves = test::part_curves("s", 1, {{"plate", Pose{}}, {"idle", Pose{}}});
+    const double heights[] = {-1, -3, -2, 5}, forces[] = {2, 9, 4, 0};
+    for (int n = 0; n < 4; ++n) {
+        FrameReport report;
+        report.load.resize(2);
+        report.load[0].force = {0, forces[n], 0};
+        for (ToolLoad& load : report.load) load.pose.translation = {0, 1e-3 * heights[n], 0};
+        curves.add(2 + n, report);
+    }
+    const std::vector<double> down = stroke_of(curves.load()[0]);
+    const double expected[] = {0, 1e-3, 3e-3, 2e-3, -5e-3};
+    REQUIRE(down.size() == 5);
+    for (int n = 0; n < 5; ++n) CHECK(down[n] == Approx(expected[n]));
+    CHECK(peaks_of(curves)[0].stroke == Approx(3e-3));
+    CHECK(peaks_of(curves)[1].stroke == Approx(5e-3));  // it bears nothing anywhere
+}
+
 TEST_CASE("peaks are the most that was felt, in the frame it was, and the farthest way") {
     StageCurves curves = test::part_curves("s", 7, {{"ram", Pose{}}, {"idle", Pose{}}});
     const double forces[] = {3, -8, 8, 1}, torques[] = {0.5, 0.25, -1, 0}, ways[] = {1, 4, 2, -3};
