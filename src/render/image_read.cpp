@@ -93,6 +93,7 @@ Image unpacked(const std::string& name, int largest_side, const Info& info, cons
         fail(ExitCode::output, "{}: not a PNG, JPEG, BMP or TGA picture ({})", name,
              stbi_failure_reason());
     }
+    if (width < 1 || height < 1) fail(ExitCode::output, "{}: has no pixels", name);
     if (width > largest_side || height > largest_side) {
         fail(ExitCode::output, "{}: {} x {} pixels is more than {} on a side", name, width, height,
              largest_side);

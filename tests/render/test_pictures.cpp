@@ -63,6 +63,13 @@ TEST_CASE("a picture that cannot be read says why", "[png]") {
     std::ofstream(folder / "whole.png", std::ios::binary) << whole;
     CHECK_THROWS_AS(read_image(folder / "whole.png", 63), Error);
     CHECK_THROWS_AS(encode_png(Image{}), Error);
+    std::string bitmap = "BM";  // of a header of 40 bytes, and of no pixel
+    for (const std::uint32_t word :
+         {54u, 0u, 54u, 40u, 0u, 0u, 24u << 16 | 1u, 0u, 0u, 0u, 0u, 0u, 0u}) {
+        for (int byte = 0; byte < 4; ++byte) bitmap += static_cast<char>(word >> 8 * byte);
+    }
+    std::ofstream(folder / "none.bmp", std::ios::binary) << bitmap;
+    CHECK_THROWS_WITH(read_image(folder / "none.bmp"), Catch::Contains("has no pixels"));
 }
 
 TEST_CASE("a file larger than any picture is refused unread") {
