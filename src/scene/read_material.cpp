@@ -161,21 +161,37 @@ void take_known(TableReader& table, const std::string& name, const MaterialCatal
     table.mistake("name", fmt::format("there is no material \"{}\"{}{}", name, hint, all));
 }
 
+// What tables of materials agree on to within some times.
+struct Measured {
+    const char* key;
+    Quantity quantity;
+    double Material::*value;
+};
+constexpr Measured kMeasured[] = {
+    {"young_modulus", Quantity::stress, &Material::young_modulus},
+    {"density", Quantity::density, &Material::density},
+    {"yield_stress", Quantity::stress, &Material::yield_stress},
+    {"strength", Quantity::stress, &Material::strength},
+    {"toughness", Quantity::toughness, &Material::toughness},
+};
+
 void warn_of_strange_change(TableReader& table, const char* key, Quantity quantity,
                             const Material& known, double was, double is) {
     const double times = is / was;
-    if (table.find(key) == nullptr || !(was > 0) ||
-        (times > 1 / kOtherMatter && times < kOtherMatter)) {
-        return;
-    }
+    const bool is_told = table.find(key) != nullptr && was > 0 && std::isfinite(was + is);
+    if (!is_told || (times > 1 / kOtherMatter && times < kOtherMatter)) return;
     table.warn(key, fmt::format("{} is {:.1e} of what {} has, {}: is a unit missing or wrong?",
                                 quantity_text(is, quantity), times, known.name,
                                 quantity_text(was, quantity)));
 }
 
+bool is_strange_yield(const Material& material) {
+    const double share = material.yield_stress / material.young_modulus;
+    return std::isfinite(share) && !(share > kLeastYield && share < kMostYield);
+}
+
 void warn_of_strange_yield(TableReader& table, const Material& material) {
     const double share = material.yield_stress / material.young_modulus;
-    if (std::isinf(share) || (share > kLeastYield && share < kMostYield)) return;
     for (const char* key : {"yield_stress", "flow_curve"}) {
         if (table.find(key) == nullptr) continue;
         table.warn(key, fmt::format("{} makes it flow at {}, {:.1e} of young_modulus: is a unit "
@@ -213,13 +229,14 @@ void read_material(TableReader& table, const AssetPaths& assets,
     table.choice<Mechanics>("mechanics", kMechanicsNames, material.mechanics);
     read_material_numbers(table, is_custom, material);
     read_look(table, look);
+    const bool yields_strangely = is_strange_yield(material);
+    if (yields_strangely) warn_of_strange_yield(table, material);
     if (!known.name.empty() && known.name == name) {
-        warn_of_strange_change(table, "young_modulus", Quantity::stress, known, known.young_modulus,
-                               material.young_modulus);
-        warn_of_strange_change(table, "density", Quantity::density, known, known.density,
-                               material.density);
+        for (const auto& [key, quantity, value] : kMeasured) {
+            if (yields_strangely && value == &Material::yield_stress) continue;
+            warn_of_strange_change(table, key, quantity, known, known.*value, material.*value);
+        }
     }
-    warn_of_strange_yield(table, material);
     table.finish();
 }
 
