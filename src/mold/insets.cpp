@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "mold/inset_regions.h"
 #include "mold/overhang.h"
 #include "mold/prepare.h"
@@ -323,23 +324,54 @@ class Thirds {
             had_[order[n]] += fill;
             if (n < kept) has_[order[n]] += fill * whole / sum;
         }
+        for (std::size_t n = 2; n < order.size(); ++n) {
+            if (parts.at(order[n]).fill < kPure * whole) break;
+            if (parts_two(parts.at(order[0]), parts.at(order[n]), parts.at(order[1]))) {
+                ++parting_[{order[n], std::minmax(order[0], order[1])}];
+            }
+        }
     }
     void tell(std::vector<std::string>& findings) const {
-        for (std::size_t m = 1; m < had_.size(); ++m) {
+        const auto changes = [&](int m) {
+            return m > 0 && std::abs(has_[m] - had_[m]) > kUntold * had_[m];
+        };
+        for (int m = 1; m < static_cast<int>(had_.size()); ++m) {
+            if (!changes(m)) continue;
             const double change = has_[m] - had_[m];
-            if (!(std::abs(change) > kUntold * had_[m])) continue;
             findings.push_back(
                 fmt::format("inset {} has {:.3g} % {} than its volume: a cell holds two materials, "
                             "and what there is of a third goes to them; a smaller spacing avoids "
                             "this",
                             m, 100 * std::abs(change) / had_[m], change > 0 ? "more" : "less"));
         }
+        for (const auto& [of, cells] : parting_) {
+            const auto& [seam, beside] = of;
+            if (changes(seam)) continue;
+            findings.push_back(fmt::format(
+                "{} between {} and {} goes to these in {}, for a cell holds two materials, and "
+                "there they hold each other; a smaller spacing avoids this",
+                name_of(seam), name_of(beside.first), name_of(beside.second),
+                counted(cells, "cell", "cells")));
+        }
     }
 
   private:
     static constexpr double kUntold = 0.01;
 
-    std::vector<double> had_, has_;  // [cells]
+    static std::string name_of(int material) {
+        return material == 0 ? "the work-piece's own matter" : fmt::format("inset {}", material);
+    }
+    // A seam lies between them, while where three meet along a line each lies beside the others.
+    static bool parts_two(const Part& one, const Part& seam, const Part& other) {
+        constexpr double kBeside = 0.25;  // of the way
+        const Vec3 from = one.moment / one.fill, way = other.moment / other.fill - from,
+                   at = seam.moment / seam.fill - from;
+        const double share = at.dot(way) / way.squaredNorm();
+        return share > 0 && share < 1 && (at - share * way).norm() < kBeside * way.norm();
+    }
+
+    std::vector<double> had_, has_;                                       // [cells]
+    std::map<std::pair<int, std::pair<int, int>>, std::size_t> parting_;  // cells
 };
 
 }  // namespace

@@ -283,3 +283,26 @@ TEST_CASE("a coat within a cell, between two parts of one material, has its volu
     REQUIRE(told.size() == 4);
     CHECK(told[2].starts_with("inset 1 has 100 % less than its volume"));
 }
+
+TEST_CASE("a seam within cells, between two insets, does not vanish without a word") {
+    const TriMesh bar = box_mesh({0, 0, 0}, {10, 2, 2});
+    const auto told_of = [&](const std::vector<TriMesh>& solids) {
+        std::vector<std::string> told;
+        with_insets(bar, solids, 2, &told);
+        return told;
+    };
+    const TriMesh left = box_mesh({0, 0, 0}, {4.5, 2, 2});
+    const std::vector<std::string> told = told_of({left, box_mesh({4.6, 0, 0}, {10, 2, 2})});
+    REQUIRE(told.size() == 2);  // the first gains 1.1 %, too
+    CHECK(
+        told[1].starts_with("the work-piece's own matter between inset 1 and inset 2 goes to "
+                            "these in 4 cells"));
+    // On the edge of cells it has cells of its own two materials.
+    CHECK(told_of({box_mesh({0, 0, 0}, {3.95, 2, 2}), box_mesh({4.05, 0, 0}, {10, 2, 2})}).empty());
+    // Where three meet along a line none of them parts the others.
+    for (const std::string& one :
+         told_of({box_mesh({0, 0.9, 0}, {4.5, 2, 2}), box_mesh({4.5, 0.9, 0}, {10, 2, 2})})) {
+        INFO(one);
+        CHECK(one.find("between") == std::string::npos);
+    }
+}
