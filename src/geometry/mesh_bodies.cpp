@@ -370,11 +370,14 @@ class Settler {
         const double sum = a.volume + b.volume;
         double least = 1e-9 * std::abs(sum);
         if (!unite(a.mesh, b.mesh, united, origin)) {
-            if (!unite_grown(a.mesh, b.mesh, united, origin)) return !enters(a, b) && !enters(b, a);
+            const double* grown = std::find_if(
+                std::begin(kGrown), std::end(kGrown),
+                [&](double by) { return unite_grown(a.mesh, b.mesh, by, united, origin); });
+            if (grown == std::end(kGrown)) return !enters(a, b) && !enters(b, a);
             Box both = a.box;
             both.grow(b.box);
             const double smaller = std::min(a.box.size().norm(), b.box.size().norm());
-            least = 10 * kGrown * both.size().norm() * smaller * smaller;
+            least = 10 * *grown * both.size().norm() * smaller * smaller;
         }
         const double volume = signed_volume(united);
         // Nothing in common: they only touch, and stay as they are.

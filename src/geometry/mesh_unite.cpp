@@ -22,6 +22,11 @@ namespace {
 
 constexpr double kOnSurface = 1e-9;  // of the size of both: no further from it
 
+Vec3 middle_of(const TriMesh& mesh, std::size_t t) {
+    const auto& [a, b, c] = mesh.triangle[t];
+    return (mesh.position[a] + mesh.position[b] + mesh.position[c]) / 3;
+}
+
 enum class Common { no, yes };
 
 // Which patches of one surface bound the union with another, or what both have in common. Where the
@@ -37,11 +42,7 @@ std::vector<char> bounding_patches(const CutPatches& cut, const TriMesh& other, 
         of_patch[p].push_back(static_cast<int>(t));
         area.push_back(area_vector(cut.mesh.position, cut.mesh.triangle[t]).norm());
     }
-    const auto middle_of = [&](int t) -> Vec3 {
-        const Corners& c = cut.mesh.triangle[t];
-        return (cut.mesh.position[c[0]] + cut.mesh.position[c[1]] + cut.mesh.position[c[2]]) / 3;
-    };
-    const auto is_off = [&](int t) { return tree.distance(middle_of(t)) > gap; };
+    const auto is_off = [&](int t) { return tree.distance(middle_of(cut.mesh, t)) > gap; };
     const auto is_smaller = [&](int s, int t) { return area[s] < area[t]; };
     std::vector<char> bounds;
     for (std::vector<int>& patch : of_patch) {
@@ -60,12 +61,12 @@ std::vector<char> bounding_patches(const CutPatches& cut, const TriMesh& other, 
             if (off) t = *std::max_element(patch.begin(), on, is_smaller);
         }
         if (off) {
-            const bool outer = std::abs(tree.winding_number(middle_of(t))) < 0.5;
+            const bool outer = std::abs(tree.winding_number(middle_of(cut.mesh, t))) < 0.5;
             bounds.push_back(outer == (part == Common::no));
             continue;
         }
         const Corners& c = cut.mesh.triangle[t];
-        const Corners& beneath = other.triangle[tree.nearest(middle_of(t)).triangle];
+        const Corners& beneath = other.triangle[tree.nearest(middle_of(cut.mesh, t)).triangle];
         const bool agree =
             area_vector(cut.mesh.position, c).dot(area_vector(other.position, beneath)) > 0;
         bounds.push_back(agree && keep_common);
@@ -165,18 +166,29 @@ void drop_flat(TriMesh& mesh, std::vector<int>& origin, double gap) {
 }
 
 // Whether what does not bound the result lies on its other side, or on it. A patch that is not
-// parted where it should be lies neither in nor out.
+// parted where it should be lies neither in nor out; one with all of its corners on the result may
+// still be the wall between them.
 bool parts_well(const TriangleTree& result, const CutPatches& cut, const std::vector<char>& bounds,
                 double gap, Common part) {
-    std::vector<char> asked(cut.mesh.position.size(), 0);
+    const auto is_amiss = [&](const Vec3& p) {
+        return (result.winding_number(p) > 0.5) == (part == Common::yes);
+    };
+    enum Place : char { unknown, on, beside };
+    std::vector<Place> place(cut.mesh.position.size(), unknown);
     for (std::size_t t = 0; t < cut.patch.size(); ++t) {
         if (bounds[cut.patch[t]]) continue;
+        bool all_on = true;
         for (const int i : cut.mesh.triangle[t]) {
-            if (asked[i]++) continue;
             const Vec3& p = cut.mesh.position[i];
-            const bool within = result.winding_number(p) > 0.5;
-            if (within == (part == Common::yes) && result.distance(p) > gap) return false;
+            if (place[i] == unknown) {
+                place[i] = result.distance(p) > gap ? beside : on;
+                if (place[i] == beside && is_amiss(p)) return false;
+            }
+            all_on = all_on && place[i] == on;
         }
+        if (!all_on) continue;
+        const Vec3 middle = middle_of(cut.mesh, t);
+        if (result.distance(middle) > gap && is_amiss(middle)) return false;
     }
     return true;
 }
@@ -228,9 +240,9 @@ bool combine(const TriMesh& a, const TriMesh& b, Common part, double close, TriM
     return true;
 }
 
-bool combine_grown(const TriMesh& a, const TriMesh& b, Common part, TriMesh& result,
-                   std::vector<int>& origin) {
-    const double by = kGrown * size_of(a, b);
+bool combine_grown(const TriMesh& a, const TriMesh& b, Common part, double grown_by,
+                   TriMesh& result, std::vector<int>& origin) {
+    const double by = grown_by * size_of(a, b);
     const Box box = box_of(b.position);
     const Eigen::Array3d half = (0.5 * box.size()).cwiseMax(by);
     const Vec3 larger = (half + by) / half;
@@ -247,19 +259,25 @@ bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>
     return combine(a, b, Common::no, kOnSurface * size_of(a, b), result, origin);
 }
 
-bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
-    return combine_grown(a, b, Common::no, result, origin);
+bool unite_grown(const TriMesh& a, const TriMesh& b, double grown, TriMesh& result,
+                 std::vector<int>& origin) {
+    return combine_grown(a, b, Common::no, grown, result, origin);
 }
 
 bool intersect(const TriMesh& a, const TriMesh& b, TriMesh& result) {
     std::vector<int> origin;
-    if (!combine(a, b, Common::yes, kOnSurface * size_of(a, b), result, origin) &&
-        !combine_grown(a, b, Common::yes, result, origin)) {
-        return false;
-    }
     const double most = std::min(signed_volume(a), signed_volume(b));
-    const double volume = signed_volume(result);
-    return volume > -kOnSurface * most && volume < (1 + 10 * kGrown) * most;
+    const auto is_in_both = [&](double within) {
+        const double volume = signed_volume(result);
+        return volume > -kOnSurface * most && volume < (1 + within) * most;
+    };
+    if (combine(a, b, Common::yes, kOnSurface * size_of(a, b), result, origin) &&
+        is_in_both(10 * kGrown[0])) {
+        return true;
+    }
+    return std::any_of(std::begin(kGrown), std::end(kGrown), [&](double grown) {
+        return combine_grown(a, b, Common::yes, grown, result, origin) && is_in_both(10 * grown);
+    });
 }
 
 }  // namespace swage

@@ -14,10 +14,12 @@ namespace swage {
 // cannot be made (a surface that crosses itself, say). Positions and triangles only.
 bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
 
-// The same with b larger by kGrown of the size of both: faces of the two that lie on each other but
-// for rounding, and so cut each other in parts only, do so no more.
-constexpr double kGrown = 2e-8;
-bool unite_grown(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
+// The same with b larger by `grown` of the size of both: faces of the two that lie on each other
+// but for rounding, and so cut each other in parts only, do so no more. To be tried in turn: as
+// little as rounded numbers of 64 bits ask, or what those of a file do.
+inline constexpr double kGrown[] = {2e-8, 1e-6};
+bool unite_grown(const TriMesh& a, const TriMesh& b, double grown, TriMesh& result,
+                 std::vector<int>& origin);
 
 // What lies in both of two such surfaces. False when it cannot be made.
 bool intersect(const TriMesh& a, const TriMesh& b, TriMesh& result);
