@@ -58,6 +58,9 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     if (!given.passes.empty()) settings.passes.clear();
     for (const std::string& name : given.passes) {
         const std::optional<PicturePass> pass = pass_named(name);
+        if (!pass && given.passes.size() > 1) {
+            fail(ExitCode::command_line, "--passes: \"none\" stands alone");
+        }
         if (pass && !settings.has(*pass)) settings.passes.push_back(*pass);
     }
     if (!given.gl.empty()) settings.gl = gl_named(given.gl);

@@ -29,7 +29,7 @@ Legend make_legend(const std::string& title, const std::string& unit, double low
 // At the bottom of the picture, on a darkened ground. A picture too small for it stays as it is:
 // false then.
 bool draw_legend(const Legend& legend, Image& image);
-// The share of the picture's height that it takes at the bottom, less than half; 0: it is too
+// The share of the picture's height that it takes at the bottom, up to half; 0: it is too
 // small.
 double legend_share(int picture_height);
 

@@ -75,7 +75,7 @@ struct RenderSettings {
     std::optional<SkinField> color;                    // bodies by it; none: as they look
     std::optional<std::array<double, 2>> color_range;  // of its scale, ascending, SI
     bool legend = true;                                // of that, on the still
-    // Of the height, that the framed action is kept off at the bottom, for a legend; 0 to 0.4.
+    // Of the height, that the framed action is kept off at the bottom, for a legend; 0 to 0.5.
     double free_below = 0;
     std::vector<PicturePass> passes;  // each at most once
 

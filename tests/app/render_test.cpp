@@ -180,6 +180,7 @@ TEST_CASE("passes lie beside the stills of a run whose scene asks for them, and 
     CHECK(names({"--frames", "3", "--passes", " depth, matte"}) ==
           names({"--frames", "3", "--passes", "depth,matte"}));
     CHECK(names({"--frames", "3", "--passes", "none"}) == Names{"frame_0003.png"});
+    CHECK(drawable.draw(drawable.out(), {"--passes", "depth,none"}).code == 2);
     const Outcome refused = drawable.draw(drawable.out(), {"--passes", "depth,mate"});
     CHECK(refused.code == 2);
     CHECK(refused.err.find("mate") != std::string::npos);
