@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/equilibrium_search.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -32,8 +31,9 @@ bool floats_under_pressure(const Apparatus& apparatus) {
                        [](const Load& load) { return load.force.empty() && load.pressure != 0; });
 }
 
+// With `hold` of the drag.
 NewtonProblem problem_of(StaticForces& forces, const Drive& to, double accuracy,
-                         RestingContacts::Slipping slipping) {
+                         RestingContacts::Slipping slipping, double hold) {
     NewtonProblem problem;
     problem.forces = [&](Vec3Array& force) {
         forces.find(to);
@@ -46,27 +46,27 @@ NewtonProblem problem_of(StaticForces& forces, const Drive& to, double accuracy,
     forces.contacts.add_stiffness(forces.matter, problem.diagonal);
     problem.drag.resize(forces.drag.size());
     for (std::size_t p = 0; p < forces.drag.size(); ++p) {
-        problem.drag[p] = forces.hold * forces.drag[p];
+        problem.drag[p] = hold * forces.drag[p];
     }
     return problem;
 }
 
-// Whether the matter itself gives way is asked by it, and not whether it can slide in its grips.
-NewtonProblem firm_problem(StaticForces& forces, const Drive& to, double accuracy) {
-    NewtonProblem problem = problem_of(forces, to, accuracy, RestingContacts::Slipping::held);
-    for (HeldPoint& h : problem.held) {
-        const Eigen::SelfAdjointEigenSolver<Mat3> ways(h.stiffness, Eigen::EigenvaluesOnly);
-        h.stiffness = ways.eigenvalues().maxCoeff() * Mat3::Identity();
-    }
-    return problem;
+// The drag that whether a body gives way is asked with. NOTE: all of it holds a slender one at up
+// to 1.2 times what it bears.
+double little_hold(const StaticForces& forces) { return std::min(forces.hold, kSmoothHold); }
+
+// What slips would stick if turned back.
+NewtonProblem buckling_problem(StaticForces& forces, const Drive& to, double accuracy) {
+    return problem_of(forces, to, accuracy, RestingContacts::Slipping::held, little_hold(forces));
 }
 
-// To either side along this way, as far as the forces drive the body there. Returns false, and
-// leaves it, where they do to neither.
+// To either side along this way, as far as the forces drive the body there, with the drag that it
+// was found to give way by. Returns false, and leaves it, where they do to neither.
 bool go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
     Vec3Array& x = forces.matter.particle_position;
     const double a = forces.matter.lattice.spacing, longest = longest_of(way);
     const Vec3Array from = x;
+    const double hold = std::exchange(forces.hold, little_hold(forces));
     const auto work_at = [&](double far) {
         x = from;
         combine(1, far / longest, way, x);
@@ -75,14 +75,11 @@ bool go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
     };
     double far = kNudge * a;
     if (work_at(-far) > work_at(far)) far = -far;
-    if (!(work_at(far) > 0)) {
-        x = from;
-        forces.find(to);
-        return false;
-    }
-    while (std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
-    work_at(far);
-    return true;
+    const bool driven = work_at(far) > 0;
+    while (driven && std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
+    forces.hold = hold;
+    work_at(driven ? far : 0);
+    return driven;
 }
 
 // What is in some grip, or all, has gone [m]: other pieces go anywhere.
@@ -123,7 +120,8 @@ void EquilibriumSearch::connections_changed(const StaticForces& forces) {
 Relaxation EquilibriumSearch::solve_smooth(StaticForces& forces, const StaticMove& move,
                                            double accuracy) {
     const Newton::Result found = newton_->solve(
-        forces.matter, problem_of(forces, move.to, accuracy, RestingContacts::Slipping::free));
+        forces.matter,
+        problem_of(forces, move.to, accuracy, RestingContacts::Slipping::free, forces.hold));
     look_around(forces, move.to);  // steps that were not kept have met other things
     const bool converged = found.converged && forces.mirrored == 0;
     newton_pause_ = converged ? 0 : std::clamp(2 * newton_pause_, 1, kLongestPause);
@@ -208,7 +206,7 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
     }
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(forces.apparatus) || forces.self.presses()) break;
-        const NewtonProblem problem = firm_problem(forces, move.to, accuracy);
+        const NewtonProblem problem = buckling_problem(forces, move.to, accuracy);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
         if (!newton_->buckles(matter, problem)) {
             if (forces.touches() || accuracy < kFinest * tolerance_) break;

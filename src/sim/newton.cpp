@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/interrupt.h"
+#include "sim/free_motions.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -227,7 +228,7 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     };
     const SoftMode::Map exact = times(1), prepared = times(prepared_.kind.geometric);
     const double quotient = softest_.follow(
-        matter.particle_position, matter.particle_mass, exact,
+        matter.particle_position, matter.particle_mass, free_motions(matter, problem.held), exact,
         [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
     // Looked at again when half of what is left could have gone.
     const double fall = (firmness_ - quotient) / (since_ + 1);

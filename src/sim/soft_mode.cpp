@@ -42,10 +42,13 @@ Vec3Array first_guess(const Vec3Array& x) {
 }  // namespace
 
 double SoftMode::follow(const Vec3Array& position, const std::vector<double>& mass,
-                        const Map& product, const Map& solve) {
+                        const std::vector<Vec3Array>& free, const Map& product, const Map& solve) {
     const std::size_t count = position.size();
     const auto with_mass = [&](const Vec3Array& a, const Vec3Array& b) {
         return chunked_sum(count, [&](std::size_t p) { return mass[p] * a.at(p).dot(b.at(p)); });
+    };
+    const auto take_free = [&](Vec3Array& way) {
+        for (const Vec3Array& f : free) combine(1, -with_mass(f, way), f, way);
     };
     int rounds = kMoreRounds;
     if (motion_.size() != count) {
@@ -55,6 +58,8 @@ double SoftMode::follow(const Vec3Array& position, const std::vector<double>& ma
     }
     // Kept of one length: that of a unit mass.
     Vec3Array image, last_image, rest, way, way_image;
+    take_free(motion_);
+    if (last_.size() == count) take_free(last_);
     combine(1 / std::sqrt(with_mass(motion_, motion_)), 0, motion_, motion_);
     product(motion_, image);
     if (last_.size() == count) product(last_, last_image);
@@ -67,6 +72,7 @@ double SoftMode::follow(const Vec3Array& position, const std::vector<double>& ma
             }
         });
         solve(rest, way);
+        take_free(way);
         const double size = with_mass(way, way);
         if (!(size > 0) || !std::isfinite(size)) return quotient;
         combine(1 / std::sqrt(size), 0, way, way);

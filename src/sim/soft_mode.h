@@ -15,10 +15,11 @@ class SoftMode {
   public:
     using Map = std::function<void(const Vec3Array& from, Vec3Array& to)>;
 
-    // Comes closer to the softest motion under this stiffness; `solve` is about its inverse.
-    // Returns the quotient of stiffness and mass, which is never below the true one [1/s2].
-    double follow(const Vec3Array& position, const std::vector<double>& mass, const Map& product,
-                  const Map& solve);
+    // Comes closer to the softest motion under this stiffness, of those that have nothing of what
+    // is `free` (sim/free_motions.h); `solve` is about its inverse. Returns the quotient of
+    // stiffness and mass, which is never below the true one [1/s2].
+    double follow(const Vec3Array& position, const std::vector<double>& mass,
+                  const std::vector<Vec3Array>& free, const Map& product, const Map& solve);
 
     const Vec3Array& motion() const { return motion_; }  // of any length
 
