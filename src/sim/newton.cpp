@@ -16,6 +16,7 @@ constexpr int kMostIterations = 400;  // of conjugate gradients
 constexpr int kKeptSteps = 3;         // that coarse matrices serve in one solution
 constexpr int kMostTries = 12;        // of the length of a step
 constexpr int kUnwatched = 3;         // increments without a look at the softest motion, at most
+constexpr double kHaste = 1.5;        // times as far as before they may go
 constexpr struct {
     double geometric, firmer;  // by a share of the diagonal
 } kPrepared[] = {{1, 0}, {0, 0}, {0, 0.01}, {0, 0.1}};
@@ -214,7 +215,8 @@ bool Newton::find_bend(Aggregate& matter, const NewtonProblem& problem) {
 }
 
 bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
-    if (unwatched_ > 0 && prepared_.points == problem.held.size()) {
+    const double gone = farthest_move(looked_at_, matter.particle_position);
+    if (unwatched_ > 0 && prepared_.points == problem.held.size() && gone <= unwatched_way_) {
         --unwatched_;
         ++since_;
         return false;
@@ -230,12 +232,14 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     const double quotient = softest_.follow(
         matter.particle_position, matter.particle_mass, free_motions(matter, problem.held), exact,
         [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
-    // Looked at again when half of what is left could have gone.
+    // Looked at again when half of what is left could have gone, if increments stay what they are.
     const double fall = (firmness_ - quotient) / (since_ + 1);
     unwatched_ = since_ < 0 || firmness_ < 0 ? 0
                  : 2 * kUnwatched * fall < quotient
                      ? kUnwatched
                      : static_cast<int>(std::max(0.5 * quotient / fall, 0.0));
+    unwatched_way_ = unwatched_ > 0 ? kHaste * unwatched_ * gone / (since_ + 1) : 0;
+    looked_at_ = matter.particle_position;
     firmness_ = quotient;
     since_ = 0;
     if (!(quotient < 0)) return false;

@@ -161,6 +161,13 @@ TEST_CASE("a strut held along some axes buckles at the load that is theirs") {
     }
 }
 
+TEST_CASE("a strut that is pressed on after a pause is seen to buckle") {
+    Strut strut(3);
+    strut.hold(-1, kAll).load(1).begin();
+    for (double share : {0.3, 0.6, 0.9, 0.9, 0.9}) CHECK(!strut.press(share, 0.25));
+    CHECK(strut.press(1.15, 0.25));
+}
+
 TEST_CASE("a strut between smooth plates buckles at the load that is theirs") {
     const int cells = GENERATE(3, 4);
     INFO(cells << " cells across");
@@ -181,5 +188,9 @@ TEST_CASE("a strut between smooth plates buckles at the load that is theirs") {
     SECTION("one in a socket, the other free") {
         strut.plate(-1).socket(-1, deep).load(1);
         check_buckles(strut, 0.25 * part * part);
+    }
+    SECTION("one in a socket, the other on a plate") {
+        strut.plate(-1).socket(-1, deep).plate(1);
+        check_buckles(strut, part * part);
     }
 }
