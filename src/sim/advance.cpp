@@ -87,6 +87,17 @@ struct Simulation::Rooms {
     double elastic(std::size_t b) {
         return std::visit([&](auto& any) { return any.elastic_energy(b); }, solver);
     }
+    BodyContact* contact() {  // null: nothing moves
+        return std::visit(
+            [](auto& any) -> BodyContact* {
+                if constexpr (std::is_same_v<std::decay_t<decltype(any)>, QuasistaticSolver>) {
+                    return nullptr;
+                } else {
+                    return &any.contact();
+                }
+            },
+            solver);
+    }
     double connections_changed(std::size_t b, const Drive& now) {
         return std::visit([&](auto& any) { return any.connections_changed(b, now); }, solver);
     }
@@ -372,6 +383,20 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveA
         }
     }
     return report;
+}
+
+std::string Simulation::hand_on() const {
+    ByteWriter out;
+    BodyContact* const contact = rooms_->contact();
+    if (contact != nullptr && contact->acts()) contact->hand_on(out);
+    return out.bytes();
+}
+
+void Simulation::take_on(std::string_view contacts) {
+    BodyContact* const contact = rooms_->contact();
+    if (contact == nullptr || !contact->acts() || contacts.empty()) return;
+    ByteReader in(contacts);
+    contact->take_on(in);
 }
 
 void Simulation::save(ByteWriter& out) const { out(*rooms_); }

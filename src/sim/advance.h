@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -98,6 +99,12 @@ class Simulation {
     // is reached, it goes no farther than there, and later no limit is looked at. `way`: the drives
     // between the two, where they are not on the straight way.
     FrameReport advance(const Drive& from, const Drive& to, const DriveAt& way = {});
+
+    // What touches as a stage of motion ends goes on as it was where another begins, of the same
+    // bodies as they are: what contacts of bodies with each other and with themselves remember.
+    // Nothing, and contacts begin, where either stage is none of motion. Throws as load().
+    std::string hand_on() const;
+    void take_on(std::string_view contacts);
 
     // All that its moves have changed, but for the bodies. What was saved of a simulation goes on
     // in another that began as it did, once the bodies are those of then: by the same bits. Throws

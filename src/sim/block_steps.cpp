@@ -140,6 +140,7 @@ void BlockSolver::start_books(const std::vector<Stored>& before, bool again, Mov
         const double elastic = again ? start.elastic : before[b].elastic;
         start = before[b];
         start.elastic = elastic;
+        start.contact += outcome.body[b].by_contact.damped;  // let go of as it began
         sum += before[b].sum();
     }
     if (!started_) energy_.start(sum);

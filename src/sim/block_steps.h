@@ -51,6 +51,8 @@ class BlockSolver {
     double elastic_energy(std::size_t body) { return bodies_[body].elastic_energy(); }  // [J]
     const LoadSet& pushes(std::size_t body) const { return bodies_[body].pushes(); }
 
+    BodyContact& contact() { return bodies_.contact(); }
+
     template <typename Io>
     void visit(Io& io) {  // what steps change
         io(bodies_, energy_, started_, share_, good_blocks_, halvings_, steps_, rescued_blocks_);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/bytes.h"
 #include "base/parallel.h"
 #include "geometry/box.h"
 #include "geometry/disjoint_sets.h"
@@ -75,6 +76,46 @@ void BodyContact::restore(const State& state) {
     for (std::size_t w : near_) way_[w].come_near(step_);
     for (std::size_t w = 0; w < way_.size(); ++w) way_[w].restore(state.way[w]);
     allowance_ = -1;
+}
+
+void BodyContact::hand_on(ByteWriter& out) {
+    out(side_.size(), listed_, allowance_);
+    for (ContactSide& side : side_) {
+        const bool is_broken = side.points().size() > side.own_points();
+        out(is_broken);
+        if (is_broken) side.visit_points(out);
+    }
+    out(std::uint64_t(way_.size()));
+    for (std::size_t w = 0; w < way_.size(); ++w) {
+        ByteWriter way;
+        way_[w].hand_on(way);
+        const bool near = std::binary_search(near_.begin(), near_.end(), w);
+        out(pair_[w].from, pair_[w].onto, near, way.bytes());
+    }
+}
+
+void BodyContact::take_on(ByteReader& in) {
+    if (in.get<std::size_t>() != side_.size()) return;
+    in(listed_, allowance_);
+    for (ContactSide& side : side_) {
+        if (in.get<bool>()) side.visit_points(in);
+    }
+    const auto count = in.get<std::uint64_t>();
+    if (count != way_.size()) allowance_ = -1;
+    for (std::uint64_t n = 0; n < count; ++n) {
+        std::size_t from, onto;
+        bool near;
+        std::string bytes;
+        in(from, onto, near, bytes);
+        for (std::size_t w = 0; w < way_.size(); ++w) {
+            if (pair_[w].from != from || pair_[w].onto != onto) continue;
+            ByteReader way(bytes);
+            way_[w].take_on(way, step_);
+            if (near) near_.push_back(w);
+        }
+    }
+    for (ContactSide& side : side_) side.patch().clear();
+    for (std::size_t w : near_) way_[w].resolve();
 }
 
 std::size_t BodyContact::candidates() const {

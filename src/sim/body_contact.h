@@ -69,6 +69,12 @@ class BodyContact {
 
     std::size_t candidates() const;
 
+    // What the next stage's begins with, of the same bodies as they are now: which contacts there
+    // are and what they remember. Of pairs that do not act in it nothing is taken on, and such as
+    // are new begin.
+    void hand_on(ByteWriter& out);
+    void take_on(ByteReader& in);
+
     // For equilibria, of one body: see sim/contact_way.h; adds to each particle what its contacts
     // can add to its stiffness [N/m]; what pressed when forces were last found.
     void meet_anew();

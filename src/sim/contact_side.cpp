@@ -219,6 +219,14 @@ void ContactSide::find_near() {
     near_whole_ = touch_.whole();
 }
 
+void ContactSide::forget_near() {
+    own_place_.clear();
+    near_set_.clear();
+    near_.clear();
+    set_home_.clear();
+    near_whole_.clear();
+}
+
 bool ContactSide::is_neighbour(int point, const Vec3i& site) const {
     if (near_set_[point] < 0) return false;
     const Vec3i at = site - touch_.home()[point];

@@ -75,14 +75,24 @@ class ContactSide {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(patch_, touch_);
-        if constexpr (Io::kReads) find_cells();
+        io(patch_);
+        visit_points(io);
+    }
+    // Of that the points, as they have come to be numbered.
+    template <typename Io>
+    void visit_points(Io& io) {
+        io(touch_);
+        if constexpr (Io::kReads) {
+            forget_near();
+            find_cells();
+        }
     }
 
   private:
     RestSurface::Depth least_depth(const Vec3i& site, CellId cell, const Vec3& place) const;
     void find_cells();
     void find_near();
+    void forget_near();  // points are others, not only more
     Vec3 own_place(int point) const { return own_place_[point].cast<double>(); }
 
     Aggregate* matter_;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/bytes.h"
 #include "base/parallel.h"
 #include "sim/contact_search.h"
 #include "sim/limited_stiffness.h"
@@ -115,6 +116,22 @@ void ContactWay::restore(const State& state) {
     begins_ = state.begins;
     is_found_ = false;
     if (is_static()) meet_anew();
+}
+
+void ContactWay::hand_on(ByteWriter& out) {
+    out(has_changed_, begins_, gone_, own_gone_, list_, stiffness_);
+}
+
+void ContactWay::take_on(ByteReader& in, double step) {
+    in(has_changed_, begins_, gone_, own_gone_, list_, stiffness_);
+    if (!is_near()) return;
+    const std::vector<double> were = stiffness_;
+    set_stiffness(step);
+    for (std::size_t n = 0; n < list_.size(); ++n) {
+        const auto point = static_cast<std::size_t>(list_.contact[n].point);
+        if (were[point] == stiffness_[point]) continue;
+        list_.memory[n].soft *= were[point] / stiffness_[point];
+    }
 }
 
 void ContactWay::search(double margin) {

@@ -32,6 +32,9 @@
 
 namespace swage {
 
+class ByteReader;
+class ByteWriter;
+
 class ContactWay {
   public:
     // The sides, which may be one, must outlive it.
@@ -99,6 +102,11 @@ class ContactWay {
     const ContactSums& sums() const { return sums_; }
     // The step is kept: remembers where points stick and how they met.
     void commit();
+
+    // What it leaves to the same way of a stage that follows, whose steps are of this length [s].
+    // What touches goes on as stiff as it was, whatever is asked for then.
+    void hand_on(ByteWriter& out);
+    void take_on(ByteReader& in, double step);
 
     template <typename Io>
     void visit(Io& io) {  // what steps change

@@ -315,6 +315,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
         const std::size_t b = group[n];
         outcome.body[b].by_contact.start(by_contact_[b]);
         outcome.body[b].before = store[n];
+        outcome.body[b].before.contact += by_contact_[b].damped;  // let go of as it began
         if (mover_[b].step == 0) mover_[b].budget = std::max(store[n].sum(), 0.0);
     }
     for (Drive begin = from; begin.time < to.time;) {

@@ -63,6 +63,7 @@ class EnergySteps {
     double connections_changed(std::size_t body, const Drive& now);  // as BlockSolver's
     double elastic_energy(std::size_t body) { return mover_[body].body.elastic_energy(); }
     const LoadSet& pushes(std::size_t body) const { return mover_[body].body.pushes(); }
+    BodyContact& contact() { return contact_; }
     // Writes down every step from now on.
     void record(std::vector<Tried>* tried) { tried_ = tried; }
 

@@ -29,6 +29,7 @@ class MovingBodies {
     MovingBody& operator[](std::size_t body) { return body_[body]; }
     const MovingBody& operator[](std::size_t body) const { return body_[body]; }
     bool may_meet() const { return contact_.acts(); }  // each other, or one itself
+    BodyContact& contact() { return contact_; }
     bool is_asleep(std::size_t body) const { return sleeping_.is_asleep(body); }
 
     template <typename Act>
