@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3430'7063'6177'7300;  // "\0swacp04" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3530'7063'6177'7300;  // "\0swacp05" on a little-endian machine
 
 template <typename Io>
 void visit_json(Io& io, Json& json) {
@@ -43,9 +43,9 @@ void visit(Io& io, Head& head) {
 
 template <typename Io>
 void visit(Io& io, Reached& reached) {
-    auto& [stages, bodies, matter, stage, start_warning, warning, steps, seconds, motion, skin] =
-        reached;
-    io(stages, bodies);
+    auto& [stages, bodies, contacts, matter, stage, start_warning, warning, steps, seconds, motion,
+           skin] = reached;
+    io(stages, bodies, contacts);
     visit_json(io, matter);
     visit_json(io, stage);
     io(start_warning, warning, steps, seconds, motion, skin);

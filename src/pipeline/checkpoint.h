@@ -19,6 +19,7 @@ namespace swage {
 struct Reached {
     int stages = 0;  // finished
     std::vector<WorkPiece> bodies;
+    std::string contacts;                                // as Simulation hands them on
     Json matter = Json::array(), stage = Json::array();  // of each body and stage, for run.json
     std::vector<std::string> start_warning, warning;     // of what was molded, and of stages
     long steps = 0;

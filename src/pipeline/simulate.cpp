@@ -190,8 +190,9 @@ class SimulationRun {
         const StageSpec& stage = context_.scene.stage[static_cast<std::size_t>(reached_.stages)];
         StageMark* const from = mark();
         const StageContext context{
-            context_.scene, context_.directory.root(), recorder_, context_.watch,
-            progress_,      [this] { begin(); },       keeper_,   from};
+            context_.scene,   context_.directory.root(), recorder_, context_.watch,
+            progress_,        [this] { begin(); },       keeper_,   from,
+            reached_.contacts};
         keeper_.begin(
             reached_.stages, from ? std::optional(from->frame) : std::nullopt,
             checkpoint_.stages == reached_.stages ? StageStart::is_kept : StageStart::is_lost);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "base/bytes.h"
@@ -88,8 +89,13 @@ class StageRun {
             if (last_frame == 0) record_start();
         }
         begin_books(simulation);
-        if (context_.from != nullptr) come_back(simulation, *context_.from);
+        if (context_.from != nullptr) {
+            come_back(simulation, *context_.from);
+        } else {
+            simulation.take_on(std::exchange(context_.contacts, {}));
+        }
         work_frames(simulation);
+        if (!outcome_.stopped && !outcome_.interrupted) context_.contacts = simulation.hand_on();
         const auto lap = context_.watch.lap("write");
         write_products();
         finish();
@@ -429,6 +435,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
             }
         }
         bodies = std::move(anew);
+        context.contacts.clear();
         log_info("{}: molded anew: {} particles, cells of {}", stage.name, particle_count(bodies),
                  quantity_text(bodies.front().matter.lattice.spacing, Quantity::length));
     }

@@ -31,6 +31,9 @@ struct StageContext {
     std::function<void()> begin;  // called once a stage is set up, before its first frame
     StageKeeper& keeper;
     StageMark* from = nullptr;  // within the stage, where it goes on; null: it begins
+    // That the stage before has handed on (Simulation::hand_on()); afterwards, of one that is done,
+    // its own.
+    std::string& contacts;
 };
 
 struct StageOutcome {

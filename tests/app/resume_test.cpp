@@ -68,6 +68,16 @@ TEST_CASE(
              "[[inset]]\nname = \"lead\"\nfrom = [0.3, 0.2, 0.2]\nto = [0.55, 0.7, 0.7]\n" +
              floor(3) + "[[stage]]\nmachine = \"cut\"\nframes = 4\nduration = \"4 ms\"\n" +
              floor(3)},
+        {"breaks in motion and lies on itself",
+         kMesh + falls(8) + kBrittle + "[mold]\nacross = 3\n" + floor(6) + "self_contact = true\n" +
+             floor(6) + "self_contact = true\n" + floor(6) + "self_contact = true\n"},
+        {"strike each other", kBox + kBrittle + kMold +
+                                  "[[body]]\nname = \"other\"\nfile = \"box.obj\"\n"
+                                  "at = [0, \"2.05 cm\", 0]\n"
+                                  "velocity = [0, \"-2 m/s\", 0]\nacross = 2\n" +
+                                  "[[stage]]\nmachine = \"floor\"\nframes = 4\n"
+                                  "duration = \"0.5 ms\"\n" +
+                                  floor(8)},
     }));
     INFO(name);
     const Scratch scratch;

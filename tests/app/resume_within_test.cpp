@@ -167,6 +167,12 @@ TEST_CASE("a run goes on within whichever stage it was at") {
                   {6, 14, 15, 19});
 }
 
+TEST_CASE("what broke and met itself in the stage before goes on within the next") {
+    const std::string falls_on = floor(8) + "self_contact = true\n";
+    check_goes_on(kMesh + falls(8) + kBrittle + kFiner + kOutput + falls_on + falls_on,
+                  {5, 11, 14});
+}
+
 TEST_CASE("a body of two materials that is cut and molded anew goes on within any stage") {
     check_goes_on(kMesh + metal("") +
                       "[[inset]]\nname = \"tin\"\nfrom = [0.2, 0.3, 0.3]\nto = [1, 0.8, 0.7]\n" +

@@ -94,6 +94,7 @@ Reached reached_with(std::vector<WorkPiece> bodies) {
     Reached reached;
     reached.stages = 2;
     reached.bodies = std::move(bodies);
+    reached.contacts = std::string("all\0that touches", 16);
     reached.matter.push_back({{"cells", 5}, {"mass", 0.1}});
     reached.stage.push_back({{"name", "1-bend"}, {"ways", {1e-300, 0.1, -0.0}}});
     reached.start_warning = {"coarse"};
@@ -121,6 +122,7 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
     INFO(why);
     REQUIRE(read);
     CHECK(read->stages == 2);
+    CHECK(read->contacts == reached.contacts);
     CHECK(json_text(read->matter) == json_text(reached.matter));
     CHECK(json_text(read->stage) == json_text(reached.stage));
     CHECK(read->warning == reached.warning);
