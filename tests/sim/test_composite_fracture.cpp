@@ -270,35 +270,6 @@ TEST_CASE("what has flowed breaks no cell of two materials") {
     CHECK(force[1] == Approx(force[0]).epsilon(0.002));
 }
 
-namespace {
-
-// What of a whole cell lies on either side of a plane.
-MixedCell halved(CellId cell, const Vec3& normal, double at) {
-    constexpr int kAcross = 20;
-    std::array<Vec3, 2> sum{Vec3::Zero(), Vec3::Zero()};
-    std::array<int, 2> count{};
-    for (int n = 0; n < kAcross * kAcross * kAcross; ++n) {
-        const Vec3i site(n % kAcross, n / kAcross % kAcross, n / kAcross / kAcross);
-        const Vec3 place =
-            (site.cast<double>() + Vec3::Constant(0.5)) / kAcross - Vec3::Constant(0.5);
-        const bool beyond = place.dot(normal) > at;
-        sum[!beyond] += place;
-        ++count[!beyond];
-    }
-    MixedCell mixed{.cell = cell,
-                    .material = {0, 1},
-                    .fill = {},
-                    .centroid = {},
-                    .normal = normal.cast<float>()};
-    for (int p = 0; p < 2; ++p) {
-        mixed.fill[p] = static_cast<float>(count[p]) / (kAcross * kAcross * kAcross);
-        mixed.centroid[p] = (sum[p] / std::max(1, count[p])).cast<float>();
-    }
-    return mixed;
-}
-
-}  // namespace
-
 TEST_CASE("a cell of two materials that turns into springs in motion sets no energy free") {
     const double ratio = GENERATE(1e-3, 0.2, 1.0, 20.0);
     const int kind = GENERATE(0, 1, 2);  // the other breaks too, holds on, has flowed
@@ -318,7 +289,7 @@ TEST_CASE("a cell of two materials that turns into springs in motion sets no ene
         const Vec3 normal = Vec3(draw(engine), draw(engine), draw(engine)).normalized();
         Aggregate m = make_block(1, 1, 1, a, kWeak);
         m.inset.push_back(other);
-        m.mixed_cell.push_back(halved(0, normal, place(engine)));
+        m.mixed_cell.push_back(divided_cell(0, normal, place(engine)));
         m.cell_material.push_back(m.mixed_cell[0].fill[1] > 0.5f);
         LatticeForces forces(m, Excess::lives_on);
         // Strained on until it breaks.
@@ -360,7 +331,7 @@ TEST_CASE("a brittle core that cuts cells breaks in a fall, and no energy comes 
     for (std::size_t c = 0; c < bar.cell_fill.size(); ++c) {
         const double side = bar.lattice.cell_site(CellId(c)).y() == 0 ? -1 : 1;
         bar.cell_material.push_back(0);
-        bar.mixed_cell.push_back(halved(CellId(c), side * Vec3::UnitY(), -0.1));
+        bar.mixed_cell.push_back(divided_cell(CellId(c), side * Vec3::UnitY(), -0.1));
     }
     for (std::size_t p = 0; p < bar.particle_count(); ++p) {
         bar.particle_velocity.set(p, Vec3(0, -kSpeed, 0));
