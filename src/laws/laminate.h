@@ -94,13 +94,11 @@ struct Laminate {
     int rounds;
 };
 
-// Where the search begins: with what a search nearby has ended with, where `known`, 0 or 1.
+// The jump by the axes of the cell as it was molded, which a turn of the cell does not change.
 template <typename N>
-struct JumpGuess {
-    N known;
-    Triple<N> jump;
-    Columns<N> inverse;
-};
+SWAGE_INLINE Triple<N> jump_in_cell(const Laminate<N>& r) {
+    return inverse_of(r.phase[0].gradient) * r.jump;
+}
 
 // F(c_m), without the product terms of laws/cell.h: of the two parts of a full cell these do not
 // add up to nothing, and a uniform strain would push.
@@ -196,7 +194,7 @@ SWAGE_INLINE Columns<N> about_jump_slope(const Phase<N> (&m)[2], const Triple<N>
     Columns<N> sum{};
     for (int p = 0; p < 2; ++p) {
         const CellModuli& law = *m[p].law;
-        const Columns<N>& f = r.phase[p].gradient;
+        const Columns<N> f = jumped(r.phase[p].gradient, n, share[p] * r.jump);
         const N none{}, one = none + 1.0;
         N kept = one, flows = none;
         const Symmetric<N> a = taken_back(m[p].history);
@@ -233,10 +231,12 @@ SWAGE_INLINE Columns<N> pick(const M& which, const Columns<N>& a, const Columns<
     return {pick(which, a.x, b.x), pick(which, a.y, b.y), pick(which, a.z, b.z)};
 }
 
+// `start`: the jump that the search begins with, as jump_in_cell() has it. It is committed as what
+// has flowed is: far past yield W has more than one minimum, and whoever seeks the one that pushes
+// begins there.
 template <typename N>
 SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const Triple<N>& n,
-                           double spacing, Laminate<N>& r,
-                           const JumpGuess<N>& guess = JumpGuess<N>{}) {
+                           double spacing, Laminate<N>& r, const Triple<N>& start = Triple<N>{}) {
     for (int p = 0; p < 2; ++p) {
         r.phase[p].gradient = phase_gradient(c, m[p].at, spacing);
         r.phase[p].modes = pulled_back(r.phase[p].gradient * taken_back(m[p].history), c);
@@ -266,13 +266,11 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
     const bool flows = m[0].kind == CellKind::yielding || m[1].kind == CellKind::yielding;
     const N none{};
     const Triple<N> nowhere{};
-    const auto known = guess.known > none;
-    const bool all_known = all_less(none, guess.known);
-    r.inverse = pick(known, guess.inverse, firm);
-    r.jump = pick(known, guess.jump, nowhere);
+    r.inverse = firm;
+    r.jump = r.phase[0].gradient * start;
     // The step on trial begins there, with that difference.
     Triple<N> from = r.jump, way{}, last{};
-    N start{}, length = none + 1.0;  // slope of W along it; share of it that is on trial
+    N steep{}, length = none + 1.0;  // slope of W along it; share of it that is on trial
     for (r.rounds = 0;; ++r.rounds) {
         Triple<N> pull[2];
         for (int p = 0; p < 2; ++p) {
@@ -286,12 +284,10 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
         if (r.rounds == kMostRounds || all_less(r.wrong, r.right)) return;
         const auto arrived = r.wrong < r.right;
         const N now = dot(left, way);
-        const auto good = arrived | (now <= -kTooFar * start);
+        const auto good = arrived | (now <= -kTooFar * steep);
         Columns<N> inverse = r.inverse;
         if (flows && r.rounds < kGuessedRounds) {
-            if (!all_known) {
-                inverse = pick(known, inverse, inverse_of(about_jump_slope(m, n, r, share)));
-            }
+            inverse = inverse_of(about_jump_slope(m, n, r, share));
         } else if (r.rounds < kSecantRounds) {
             // The step was meant to bring the difference to nothing; what it did corrects.
             const Triple<N> step = r.jump - from, gone = inverse * (left - last);
@@ -311,12 +307,12 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
         const N far = root(dot(next, next));
         next = pick(far > kLongest + none, (kLongest / (far + 1e-300)) * next, next);
         next = pick(arrived, nowhere, next);
-        const N cut = start / (start - now), least = none + 0.1, most = none + 0.7;
+        const N cut = steep / (steep - now), least = none + 0.1, most = none + 0.7;
         const N shorter = cut > least ? (cut < most ? cut : most) : least;
         from = pick(good, r.jump, from);
         last = pick(good, left, last);
         way = pick(good, next, way);
-        start = good ? dot(left, next) : start;
+        steep = good ? dot(left, next) : steep;
         length = good ? none + 1.0 : length * shorter;
         r.jump = from + length * way;
     }

@@ -214,6 +214,7 @@ std::uint64_t state_hash(const Aggregate& matter) {
     }
     for (const MixedCell& cell : matter.mixed_cell) {
         for (const auto& part : cell.flowed) hasher.add(std::span<const float>(part));
+        hasher.add(std::span<const double>(cell.jump.data(), 3));
     }
     hasher.add(std::span<const char>(matter.cell_cracked));
     for (const CellSet& set : matter.cell_set) {

@@ -78,6 +78,9 @@ struct MixedCell {
     std::array<Eigen::Vector3f, 2> centroid;  // of these, in the cell, each -0.5 to 0.5
     Eigen::Vector3f normal;                   // of the boundary between them, unit
     MixedHistory flowed{};
+    // By what the gradient's part along the normal jumps there, committed as what has flowed is: it
+    // is sought from here (laws/laminate.h).
+    Vec3 jump = Vec3::Zero();
 
     float hardening() const { return std::max(flowed[0].back(), flowed[1].back()); }
 };

@@ -10,6 +10,7 @@ template <typename From, typename To>
 void copy_state(const Aggregate& of, const From& from, To& to) {
     to.particle_position = from.particle_position;
     to.particle_velocity = from.particle_velocity;
+    to.mixed_cell = from.mixed_cell;
     const bool breaks = of.breaks();
     if (!breaks && !of.yields()) return;
     for (int d = 0; d < kForwardCount; ++d) {
@@ -27,18 +28,8 @@ void copy_state(const Aggregate& of, const From& from, To& to) {
 
 }  // namespace
 
-void MatterState::save(const Aggregate& matter) {
-    copy_state(matter, matter, *this);
-    mixed_flowed.clear();
-    if (!matter.yields()) return;
-    for (const MixedCell& cell : matter.mixed_cell) mixed_flowed.push_back(cell.flowed);
-}
+void MatterState::save(const Aggregate& matter) { copy_state(matter, matter, *this); }
 
-void MatterState::restore(Aggregate& matter) const {
-    copy_state(matter, *this, matter);
-    for (std::size_t n = 0; n < mixed_flowed.size(); ++n) {
-        matter.mixed_cell[n].flowed = mixed_flowed[n];
-    }
-}
+void MatterState::restore(Aggregate& matter) const { copy_state(matter, *this, matter); }
 
 }  // namespace swage

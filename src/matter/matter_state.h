@@ -7,8 +7,8 @@
 namespace swage {
 
 // Each as in Aggregate. What its materials never change is not kept: of what only swings there are
-// places and speeds, of what yields or breaks history too, and of what breaks its connections
-// whole.
+// places, speeds and the jumps in cells of two materials, of what yields or breaks history too, and
+// of what breaks its connections whole.
 struct MatterState {
     Vec3Array particle_position, particle_velocity;
     std::array<ConnectionArrays, kForwardCount> connection;
@@ -17,7 +17,7 @@ struct MatterState {
     CellHistories cell_history;
     CellBackStrains cell_back;
     std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
-    std::vector<MixedHistory> mixed_flowed;  // of each of its mixed cells
+    std::vector<MixedCell> mixed_cell;
 
     void save(const Aggregate& matter);
     void restore(Aggregate& matter) const;

@@ -60,8 +60,8 @@ void visit(Io& io, CellBackStrains& back) {
 }
 template <typename Io>
 void visit(Io& io, MixedCell& mixed) {
-    auto& [cell, material, fill, centroid, normal, flowed] = mixed;
-    io(cell, material, fill, centroid, normal, flowed);
+    auto& [cell, material, fill, centroid, normal, flowed, jump] = mixed;
+    io(cell, material, fill, centroid, normal, flowed, jump);
 }
 template <typename Io>
 void visit(Io& io, CellSet& set) {

@@ -206,7 +206,7 @@ double CellSweep::sum_of_runs(const Aggregate& matter, const SlabRuns* of, const
 }
 
 double CellSweep::commit(Aggregate& matter, Forces found, SlabGrowths* growths) const {
-    if (!yields_) return 0;
+    if (!yields_) return mixed_.commit(matter, law_, found, nullptr);
     if (growths) growths->resize(slab_.size() + 1);
     const SlabRuns* const of = found == Forces::fresh ? &yielding_ : nullptr;
     RestGrowths* const mixed_growths = growths ? &growths->back() : nullptr;

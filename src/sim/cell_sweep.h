@@ -50,11 +50,6 @@ class CellSweep {
     const SlabRuns& crushed_runs() const { return crushed_; }
     std::vector<const CellRun*> strained_runs(const Aggregate& matter) const;
 
-    template <typename Io>
-    void visit(Io& io) {  // what steps change
-        io(mixed_);
-    }
-
   private:
     const MaterialLaw& law_of(const Aggregate& matter, CellId cell) const {
         return law_[matter.material_number(cell)];

@@ -35,7 +35,7 @@ Aggregate as_molded(Aggregate matter) {
     matter.cell_history.clear();
     matter.cell_back.clear();
     for (auto& part : matter.cell_plastic) part.clear();
-    for (MixedCell& mixed : matter.mixed_cell) mixed.flowed = {};
+    for (MixedCell& mixed : matter.mixed_cell) mixed.flowed = {}, mixed.jump = Vec3::Zero();
     for (ConnectionArrays& along : matter.connection) along.plastic.clear();
     return matter;
 }

@@ -111,7 +111,6 @@ class LatticeForces {
         if (spring_sweep_) io(*spring_sweep_);
         for (LatticeSweep& own : branch_sweep_) io(own);
         if (spring_flow_) io(*spring_flow_);
-        if (cells_) io(*cells_);
         io(loose_);
     }
 

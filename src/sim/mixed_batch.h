@@ -21,7 +21,7 @@ SWAGE_INLINE void set_lane(double& v, int, double to) { v = to; }
 template <typename N>
 SWAGE_INLINE void read_mixed(const Vec3Array& x, const MixedCell& cell,
                              const std::array<ParticleId, 8>& corner, int lane, N (&at)[3][8],
-                             Phase<N> (&phase)[2], Triple<N>& normal) {
+                             Phase<N> (&phase)[2], Triple<N>& normal, Triple<N>& jump) {
     for (int c = 0; c < 8; ++c) {
         set_lane(at[0][c], lane, x.x[corner[c]]);
         set_lane(at[1][c], lane, x.y[corner[c]]);
@@ -30,6 +30,9 @@ SWAGE_INLINE void read_mixed(const Vec3Array& x, const MixedCell& cell,
     set_lane(normal.x, lane, cell.normal.x());
     set_lane(normal.y, lane, cell.normal.y());
     set_lane(normal.z, lane, cell.normal.z());
+    set_lane(jump.x, lane, cell.jump.x());
+    set_lane(jump.y, lane, cell.jump.y());
+    set_lane(jump.z, lane, cell.jump.z());
     for (int p = 0; p < 2; ++p) {
         Phase<N>& m = phase[p];
         set_lane(m.fill, lane, cell.fill[p]);
@@ -69,6 +72,7 @@ struct MixedLanes {
     CornerSums<V> sums;
     Phase<V> phase[2]{};
     Triple<V> normal{};
+    Triple<V> jump{};  // committed
 
     SWAGE_INLINE MixedLanes(const MixedBatch& batch, int begin) {
         V at[3][8]{};
@@ -78,7 +82,7 @@ struct MixedLanes {
         for (int l = 0; l < kWidth; ++l) {
             const int n = cell_of(batch, begin, l);
             read_mixed(batch.matter.particle_position, batch.matter.mixed_cell[batch.cell[n]],
-                       batch.corner[n], l, at, phase, normal);
+                       batch.corner[n], l, at, phase, normal, jump);
         }
         sums = sum_corners(at);
     }

@@ -10,7 +10,6 @@
 #include "laws/cell_growth.h"
 #include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
-#include "sim/lane_memory.h"
 #include "sim/mixed_batch.h"
 #include "sim/vector_clones.h"
 
@@ -21,33 +20,6 @@ namespace {
 constexpr std::size_t kBatchesPerChunk = 8, kCellsPerChunk = 64;
 constexpr double kNearYield = 1e-6;  // of the yield stress: lanes round otherwise
 
-// The search for a jump begins where the last forces found it, and anew where they did not.
-template <int kWidth>
-SWAGE_INLINE JumpGuess<LanesOf<kWidth>> guess_of(const MixedBatch& batch, int begin,
-                                                 const MixedCells::Seen* seen) {
-    typedef LanesOf<kWidth> V;
-    double known[kWidth], jump[3][kWidth], inverse[9][kWidth];
-    for (int l = 0; l < kWidth; ++l) {
-        const MixedCells::Seen& own = seen[MixedLanes<kWidth>::cell_of(batch, begin, l)];
-        known[l] = own.jump_found ? 1 : 0;
-        for (int n = 0; n < 3; ++n) jump[n][l] = own.jump[n];
-        for (int n = 0; n < 9; ++n) inverse[n][l] = own.inverse[n];
-    }
-    const auto triple = [](const auto* from) __attribute__((always_inline)) {
-        return Triple<V>{load<V>(from[0]), load<V>(from[1]), load<V>(from[2])};
-    };
-    return {
-        load<V>(known), triple(jump), {triple(inverse), triple(inverse + 3), triple(inverse + 6)}};
-}
-template <typename V>
-SWAGE_INLINE void set_seen(const Laminate<V>& found, int lane, MixedCells::Seen& seen) {
-    seen.jump_found = found.wrong[lane] < found.right[lane];
-    const auto& [x, y, z] = found.inverse;
-    seen.jump = {found.jump.x[lane], found.jump.y[lane], found.jump.z[lane]};
-    seen.inverse = {x.x[lane], x.y[lane], x.z[lane], y.x[lane], y.y[lane],
-                    y.z[lane], z.x[lane], z.y[lane], z.z[lane]};
-}
-
 // Eight cells, as so many batches of the machine's own width. `push`: on their corners, by
 // component and corner.
 template <int kWidth>
@@ -57,16 +29,15 @@ SWAGE_INLINE void batch_forces(const MixedBatch& batch, std::array<double, 24>* 
     const double spacing = batch.matter.lattice.spacing;
     for (int begin = 0; begin < batch.count(); begin += kWidth) {
         const MixedLanes<kWidth> cells(batch, begin);
-        const JumpGuess<V> guess = guess_of<kWidth>(batch, begin, seen);
         Laminate<V> found;
-        laminate(cells.sums, cells.phase, cells.normal, spacing, found, guess);
+        laminate(cells.sums, cells.phase, cells.normal, spacing, found, cells.jump);
+        const Triple<V> jump = jump_in_cell(found);
         V force[3][8];
         spread_corners(laminate_forces(cells.sums, cells.phase, found, spacing), force);
         for (int l = 0; l < kWidth && begin + l < batch.count(); ++l) {
             for (int n = 0; n < 24; ++n) push[begin + l][n] = force[n / 8][n % 8][l];
             MixedCells::Seen& own = seen[begin + l];
-            own.may_flow = false;
-            set_seen(found, l, own);
+            own = {false, {jump.x[l], jump.y[l], jump.z[l]}};
             for (int p = 0; p < 2; ++p) {
                 const double near = -kNearYield * cells.phase[p].law->yield_stress;
                 own.may_flow = own.may_flow || (cells.phase[p].kind == CellKind::yielding &&
@@ -82,28 +53,27 @@ struct OneMixed {
     CornerSums<double> sums;
     Laminate<double> found;
 };
-// The search for its jump begins where the last forces found it: far past where a cell yields there
-// is more than one, and its books are those of the one that pushes.
+// `seen`: of the forces just found there, which have ended where this is to begin.
 OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
-                   const MixedCell& cell, const std::array<ParticleId, 8>& corner,
-                   const MixedCells::Seen* seen = nullptr) {
+                   const MixedCell& cell, const MixedCells::Seen* seen = nullptr) {
     OneMixed one;
     double at[3][8];
-    Triple<double> normal;
+    Triple<double> normal, start;
     for (int p = 0; p < 2; ++p) {
         one.phase[p].law = &laws[cell.material[p]].moduli;
         one.phase[p].kind = laws[cell.material[p]].kind;
     }
-    read_mixed(matter.particle_position, cell, corner, 0, at, one.phase, normal);
+    read_mixed(matter.particle_position, cell, matter.lattice.cell_corners(cell.cell), 0, at,
+               one.phase, normal, start);
     one.sums = sum_corners(at);
-    JumpGuess<double> guess{};
-    if (seen != nullptr && seen->jump_found) {
-        const auto& [x, y, z] = seen->jump;
-        const std::array<double, 9>& i = seen->inverse;
-        guess = {1, {x, y, z}, {{i[0], i[1], i[2]}, {i[3], i[4], i[5]}, {i[6], i[7], i[8]}}};
-    }
-    laminate(one.sums, one.phase, normal, matter.lattice.spacing, one.found, guess);
+    if (seen != nullptr) start = {seen->jump.x(), seen->jump.y(), seen->jump.z()};
+    laminate(one.sums, one.phase, normal, matter.lattice.spacing, one.found, start);
     return one;
+}
+
+// What is flat has no axes to remember it by.
+void remember(const Vec3& jump, MixedCell& cell) {
+    cell.jump = jump.allFinite() ? jump : Vec3::Zero();
 }
 
 // Of one of the two materials, with its part in the jump.
@@ -134,13 +104,12 @@ double energy_in(const Aggregate& matter, const MixedCell& cell, const OneMixed&
 
 double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                       const MixedCell& cell) {
-    return energy_in(matter, cell,
-                     one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell)));
+    return energy_in(matter, cell, one_mixed(matter, laws, cell));
 }
 
 std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                                       const MixedCell& cell) {
-    const OneMixed one = one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell));
+    const OneMixed one = one_mixed(matter, laws, cell);
     std::array<double, 2> largest;
     for (int p = 0; p < 2; ++p) {
         const Columns<double> f = gradient_of(one, cell, p) * taken_back(one.phase[p].history);
@@ -155,7 +124,7 @@ std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector
 std::array<double, 2> part_yield_shares(const Aggregate& matter,
                                         const std::vector<MaterialLaw>& laws,
                                         const MixedCell& cell) {
-    const OneMixed one = one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell));
+    const OneMixed one = one_mixed(matter, laws, cell);
     std::array<double, 2> share{};
     for (int p = 0; p < 2; ++p) {
         const Phase<double>& phase = one.phase[p];
@@ -171,7 +140,7 @@ std::array<double, 2> part_yield_shares(const Aggregate& matter,
 std::array<PartStress, 2> part_stresses(const Aggregate& matter,
                                         const std::vector<MaterialLaw>& laws,
                                         const MixedCell& cell) {
-    const OneMixed one = one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell));
+    const OneMixed one = one_mixed(matter, laws, cell);
     std::array<PartStress, 2> part;
     for (int p = 0; p < 2; ++p) {
         part[p] = {matrix_of(gradient_of(one, cell, p)), matrix_of(one.found.phase[p].stress)};
@@ -222,8 +191,14 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
     double lost = 0;
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
-        if (found == Forces::fresh && !seen_[n].may_flow) continue;
-        const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n], &seen_[n]);
+        const Seen* const seen = found == Forces::fresh ? &seen_[n] : nullptr;
+        if (seen && !seen->may_flow) {
+            remember(seen->jump, cell);
+            continue;
+        }
+        const OneMixed one = one_mixed(matter, laws, cell, seen);
+        const Triple<double> jump = jump_in_cell(one.found);
+        remember({jump.x, jump.y, jump.z}, cell);
         SlotLengths was;
         if (growths) was = rest_lengths(matter, cell.cell, &cell);
         for (int p = 0; p < 2; ++p) {
@@ -255,8 +230,7 @@ double MixedCells::elastic_energy(const Aggregate& matter,
                                   const std::vector<MaterialLaw>& laws) const {
     return ordered_sum_of(batches_.cell.size(), kCellsPerChunk, [&](std::size_t n) {
         const MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
-        return energy_in(matter, cell,
-                         one_mixed(matter, laws, cell, batches_.corner[n], &seen_[n]));
+        return energy_in(matter, cell, one_mixed(matter, laws, cell));
     });
 }
 

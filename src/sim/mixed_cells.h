@@ -53,24 +53,16 @@ class MixedCells {
     // Adds their forces on the particles [N]. Laws: by material, as they are to hold now.
     void add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                     Vec3Array& force);
-    // Remembers the flow of a converged state; returns the work that it took [J].
+    // Remembers the flow and the jumps of a converged state; returns the work that flow took [J].
     double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, Forces found,
                   RestGrowths* growths) const;
     double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws) const;
 
-    // What the last forces saw in a cell, and where the search for its jump ended.
+    // What the last forces found of a cell.
     struct Seen {
-        using IsPlain = Seen;
         bool may_flow;
-        bool jump_found;
-        std::array<double, 3> jump;
-        std::array<double, 9> inverse;  // laws/laminate.h
+        Vec3 jump;  // as in MixedCell
     };
-
-    template <typename Io>
-    void visit(Io& io) {  // what steps change
-        io(seen_);
-    }
 
   private:
     std::vector<Seen> seen_;

@@ -19,10 +19,10 @@ SWAGE_INLINE void some_matrices(const MixedBatch& batch, double turning, int beg
                                 CellMatrix* matrix) {
     typedef LanesOf<kWidth> V;
     const MixedLanes<kWidth> cells(batch, begin);
-    const auto& [c, phase, normal] = cells;
+    const auto& [c, phase, normal, jump] = cells;
     const double spacing = batch.matter.lattice.spacing;
     Laminate<V> found;
-    laminate(c, phase, normal, spacing, found);
+    laminate(c, phase, normal, spacing, found, jump);
     const Columns<V> inverse = inverse_of(jump_slope(phase, normal, found, turning));
     for (int column = 0; column < CellMatrix::kSize; ++column) {
         V alone[3][8]{};

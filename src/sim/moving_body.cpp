@@ -106,7 +106,7 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       drag_(matter, settings, step_),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       touches_(!apparatus.tool.empty()),
-      remembers_(breaks_ || matter.yields()),
+      remembers_(breaks_ || matter.yields() || !matter.mixed_cell.empty()),
       implicit_(settings.solver == Solver::implicit_steps),
       saves_branches_(settings.solver == Solver::energy_stepped),
       flies_(only_gravity_acts(apparatus, settings)) {

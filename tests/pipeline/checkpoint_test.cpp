@@ -45,6 +45,7 @@ WorkPiece piece_that_went_through_all(SkinKind skin) {
     REQUIRE(m.mixed_cell.size() > 2);
     const std::size_t particles = m.particle_count(), cells = m.cell_fill.size();
     m.mixed_cell[1].flowed[1][3] = 0.25f;
+    m.mixed_cell[1].jump = {0.1, 0.2, 0.3};
     m.cell_history.assign(cells);
     m.cell_history.row[4][2] = 0.5f;
     m.cell_back.assign(cells);
@@ -172,6 +173,7 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
         CHECK(after.matter.branch_memory.at(0).branches.time ==
               before.matter.branch_memory.at(0).branches.time);
         CHECK(after.matter.mixed_cell[1].normal == before.matter.mixed_cell[1].normal);
+        CHECK(after.matter.mixed_cell[1].jump == before.matter.mixed_cell[1].jump);
         CHECK(after.mount.vertex == before.mount.vertex);
         CHECK(after.mount.particle == before.mount.particle);
         CHECK(after.mount.stencil.axis == before.mount.stencil.axis);

@@ -7,11 +7,15 @@
 #include "mold/mold.h"
 #include "sim/cell_tangent.h"
 #include "sim/lattice_forces.h"
+#include "sim/material_laws.h"
+#include "sim/mixed_cells.h"
 #include "sim/vector_clones.h"
 #include "sim/vector_sums.h"
 #include "tests/catch.h"
+#include "tests/shared/block.h"
 #include "tests/sim/coarse_error.h"
 #include "tests/sim/force_checks.h"
+#include "tests/sim/halved_cell.h"
 #include "tests/sim/steady_flow.h"
 
 using namespace swage;
@@ -102,6 +106,101 @@ TEST_CASE("what flows far in cells of two materials is booked as it pushed") {
     }
     CHECK(plastic > 0);
     CHECK(most < 0.02 * work);
+}
+
+TEST_CASE("all that is told of a cell of two materials is of the jump that it pushes with") {
+    // One of clay and tin, drawn on in 50 increments to a strain at which there are other jumps.
+    Material clay{.young_modulus = 5e6, .poisson_ratio = 0.45, .yield_stress = 3e4};
+    const Material tin{.young_modulus = 5e10, .poisson_ratio = 0.36, .yield_stress = 1.5e7};
+    std::mt19937 engine(5);
+    std::normal_distribution<double> draw;
+    std::uniform_real_distribution<double> place(-0.35, 0.35);
+    const auto any = [&] { return Vec3(draw(engine), draw(engine), draw(engine)).normalized(); };
+    for (int round = 0; round < 10; ++round) {
+        Mat3 rate;
+        for (int n = 0; n < 9; ++n) rate(n / 3, n % 3) = draw(engine);
+        rate = (rate + rate.transpose() - 2 * rate.trace() / 3 * Mat3::Identity()).eval();
+        rate.normalize();
+        const Mat3 turn = Eigen::AngleAxisd(2, any()).toRotationMatrix();
+        Aggregate m = test::make_block(1, 1, 1, 0.01, clay);
+        m.inset.push_back(tin);
+        m.mixed_cell.push_back(test::divided_cell(0, any(), place(engine)));
+        m.cell_material.push_back(m.mixed_cell[0].fill[1] > 0.5f);
+        const MixedCell& cell = m.mixed_cell[0];
+        LatticeForces forces(m);
+        Vec3Array force;
+        const int steps = 50;
+        const Mat3 half = 0.5 * 0.4 / steps * rate, unit = Mat3::Identity();
+        const Mat3 on = (unit - half).inverse() * (unit + half);
+        for (int n = 0; n < steps; ++n) {
+            for (int p = 0; p < 8; ++p) {
+                m.particle_position.set(p, on * m.particle_position.at(p));
+            }
+            forces.find(m, Flow::trial, force);
+            forces.commit(m, Forces::fresh);
+        }
+        INFO("round " << round);
+        // Strained on, its stress does the work of its forces.
+        const std::vector<MaterialLaw> laws = material_laws(m);
+        const std::array<PartStress, 2> part = part_stresses(m, laws, cell);
+        Mat3 gradient = Mat3::Zero();
+        for (int p : {0, 1}) gradient += cell.fill[p] * part[p].gradient;
+        double work = 0, all = 0, largest = 0;
+        for (int p = 0; p < 8; ++p) {
+            const Vec3 way = rate * m.particle_position.at(p);
+            work -= force.at(p).dot(way);
+            all += force.at(p).norm() * way.norm();
+            largest = std::max(largest, force.at(p).norm());
+        }
+        for (int p : {0, 1}) {
+            work -= m.lattice.cell_volume() * cell.fill[p] *
+                    part[p].stress.cwiseProduct(rate * gradient).sum();
+        }
+        CHECK(std::abs(work) < 2e-4 * all);  // history is kept as floats
+        const Vec3 normal = cell.normal.cast<double>();
+        CHECK((part[0].stress * normal - part[1].stress * normal).norm() <
+              1e-5 * (part[0].stress * normal).norm());
+        // It is within what it yields at, and strained no further than that.
+        const std::array<double, 2> share = part_yield_shares(m, laws, cell);
+        CHECK(std::max(share[0], share[1]) == Approx(1).epsilon(1e-3));
+        const std::array<double, 2> strain = largest_strains(m, laws, cell);
+        for (int p : {0, 1}) {
+            const Material& of = m.material_at(cell.material[p]);
+            CHECK(strain[p] < 20 * of.yield_stress / of.young_modulus);
+        }
+        // Forces begun anew, and those of the cell turned as a whole, are as they were.
+        Vec3Array anew;
+        LatticeForces(m).find(m, Flow::trial, anew);
+        Aggregate turned = m;
+        for (int p = 0; p < 8; ++p) {
+            turned.particle_position.set(p, turn * m.particle_position.at(p));
+        }
+        Vec3Array along;
+        forces.find(turned, Flow::trial, along);
+        for (int p = 0; p < 8; ++p) {
+            CHECK((anew.at(p) - force.at(p)).norm() < 2e-4 * largest);
+            CHECK((along.at(p) - turn * anew.at(p)).norm() < 1e-6 * largest);
+        }
+        // And the tangent is how they change, where it is strained on.
+        for (int p = 0; p < 8; ++p) {
+            m.particle_position.add(p, 1e-3 * (rate * m.particle_position.at(p)));
+        }
+        const Vec3Array way = test::random_direction(8), here = m.particle_position;
+        Vec3Array product, f[2];
+        CellTangent(m, m.cell_fill).product(m, {}, way, product);
+        const double h = 1e-8 * m.lattice.spacing;
+        for (int n : {0, 1}) {
+            m.particle_position = here;
+            for (int p = 0; p < 8; ++p) m.particle_position.add(p, (n == 0 ? -h : h) * way.at(p));
+            forces.find(m, Flow::trial, f[n]);
+        }
+        double off = 0, most = 0;
+        for (int p = 0; p < 8; ++p) {
+            most = std::max(most, product.at(p).norm());
+            off = std::max(off, (product.at(p) - (f[0].at(p) - f[1].at(p)) / (2 * h)).norm());
+        }
+        CHECK(off < 1e-3 * most);
+    }
 }
 
 TEST_CASE("the tangent of cells of two materials is how their forces change, flow included") {
@@ -227,8 +326,7 @@ TEST_CASE("a body of two materials has its mass, its volume, and the same bits i
     set_thread_count(0);
 }
 
-TEST_CASE(
-    "a jump sought from the last one is the one sought anew, and the same bits in every way") {
+TEST_CASE("no place at which forces were asked for leaves a trace in the jumps of others") {
     Material light = soft(), heavy = stiff();
     light.yield_stress = 1e3, heavy.yield_stress = 3e4, heavy.hardening = 1e5;
     const Aggregate start = bar_with_ball(light, heavy);
@@ -239,6 +337,7 @@ TEST_CASE(
         Vec3Array f;
         for (int seed : {3, 5, 8}) {
             shake(m, 0.01, seed);
+            if (seed == 3) forces.commit(m);
             if (anew) {
                 LatticeForces(m).find(m, Flow::trial, f);
             } else {
@@ -247,13 +346,7 @@ TEST_CASE(
         }
         return f;
     };
-    const Vec3Array expected = forces_along(false), anew = forces_along(true);
-    double largest = 0, off = 0;
-    for (std::size_t p = 0; p < expected.size(); ++p) {
-        largest = std::max(largest, anew.at(p).norm());
-        off = std::max(off, (expected.at(p) - anew.at(p)).norm());
-    }
-    CHECK(off < 1e-9 * largest);
+    const Vec3Array expected = forces_along(true);
     for (int threads : {1, 3}) {
         set_thread_count(threads);
         for (int width : {8, 4, 2}) {
