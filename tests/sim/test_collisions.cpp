@@ -39,8 +39,8 @@ struct Floor {
     Pose pose{Quat::Identity(), Vec3(0, -0.1, 0)};
     double let_down = 0.3;  // [s] over which gravity sets in
 
-    Floor(const Material& material, const Vec3& gravity)
-        : plate(make_block(12, 2, 6, 0.1, material)), block(make_block(4, 2, 4, 0.1, material)) {
+    Floor(const Material& of_plate, const Material& of_block, const Vec3& gravity)
+        : plate(make_block(8, 2, 4, 0.1, of_plate)), block(make_block(3, 2, 3, 0.1, of_block)) {
         place(plate, pose);
         settings.gravity = gravity;
         Grip hold;
@@ -123,7 +123,7 @@ TEST_CASE("bodies that collide part, and neither passes through the other") {
 }
 
 TEST_CASE("particles that are all that is left of cells do not fall through another body") {
-    Floor floor(kSpringy, Vec3(0, -9.81, 0));
+    Floor floor(kSpringy, kSpringy, Vec3(0, -9.81, 0));
     floor.let_down = 0.01;
     floor.settings.step_safety = 0.2;  // the books' remainder is of second order in it
     Aggregate& block = floor.block = make_block(2, 5, 2, 0.1, kSpringy);
@@ -321,17 +321,23 @@ TEST_CASE("steps that energy chooses go on where they take back what has broken"
 }
 
 TEST_CASE("a block on another body stays below static friction and slides above") {
-    Material m = kSpringy;
-    m.damping_ratio = 0.1;
-    m.friction = 0.3;
-    m.static_friction = 0.45;
+    Material smooth = kSpringy, even = kSpringy, rough = kSpringy;
+    smooth.damping_ratio = even.damping_ratio = rough.damping_ratio = 0.1;
+    smooth.friction = 0.1, smooth.static_friction = 0.2;
+    even.friction = 0.3, even.static_friction = 0.45;
+    rough.friction = 0.5, rough.static_friction = 0.7;
+    struct Case {
+        Material plate, block;  // alike, or of this mean, which acts
+        bool leans;
+    };
     const double g = 9.81;
     // Pushed along the face that touches, so that it does not topple; then on a slope, which is a
     // level where gravity leans.
-    for (const bool leans : {false, true}) {
+    for (const auto& [of_plate, of_block, leans] :
+         {Case{even, even, true}, {smooth, rough, false}, {rough, smooth, false}}) {
         for (const auto& [share, slides] : {std::pair(0.441, false), std::pair(0.459, true)}) {
             const double down = leans ? g / std::hypot(1, share) : g;
-            Floor floor(m, Vec3(0, -down, 0));
+            Floor floor(of_plate, of_block, Vec3(0, -down, 0));
             Load push = push_below(floor.block, share * floor.block.mass() * down);
             if (leans) {
                 const double points = static_cast<double>(floor.block.surface.size());
@@ -356,8 +362,9 @@ TEST_CASE("a block on another body stays below static friction and slides above"
             const double v = floor.block.mean_velocity().x();
             simulation.advance(drive(1.0), drive(1.2));
             const double gained = (floor.block.mean_velocity().x() - v) / 0.2;
-            INFO("leans " << leans << ", push " << share << ", from " << rest << " to "
-                          << floor.block.centre().x() << ", gained " << gained);
+            INFO("plate's " << of_plate.friction << ", leans " << leans << ", push " << share
+                            << ", from " << rest << " to " << floor.block.centre().x()
+                            << ", gained " << gained);
             if (slides) {
                 CHECK(gained == Approx(down * (share - 0.3)).epsilon(0.01));
             } else {
@@ -368,23 +375,61 @@ TEST_CASE("a block on another body stays below static friction and slides above"
     }
 }
 
-TEST_CASE("sticking lumps hold below their tension and part above it") {
-    for (const auto& [tension, holds] : {std::pair(5000.0, true), std::pair(1400.0, false)}) {
-        Material m = kSpringy;
-        m.young_modulus = 3e5;
-        m.damping_ratio = 0.1;
-        m.stickiness = tension;
+TEST_CASE("sticking lumps hold below the mean of their tensions and part above it") {
+    struct Case {
+        double plate, block;  // [Pa]
+        bool holds;
+    };
+    for (const auto& [of_plate, of_block, holds] : {Case{5000, 5000, true},
+                                                    {5000, 0, true},
+                                                    {0, 5000, true},
+                                                    {1400, 1400, false},
+                                                    {3000, 0, false},
+                                                    {0, 3000, false}}) {
+        Material low = kSpringy;
+        low.young_modulus = 3e5;
+        low.damping_ratio = 0.1;
+        Material high = low;
+        high.stickiness = of_plate, low.stickiness = of_block;
         // The block hangs below the plate: 2 kPa.
-        Floor floor(m, Vec3(0, 9.81, 0));
+        Floor floor(high, low, Vec3(0, 9.81, 0));
         Simulation simulation({&floor.plate, &floor.block}, floor.apparatus, floor.settings);
         for (int f = 0; f < 12; ++f) {
             simulation.advance(floor.drive(0.05 * f), floor.drive(0.05 * (f + 1)));
         }
-        INFO("tension " << tension << ": " << floor.block.centre().y());
+        INFO("tensions " << of_plate << " and " << of_block << ": " << floor.block.centre().y());
         if (holds) {
             CHECK(floor.block.centre().y() == Approx(0.1).margin(0.01));
         } else {
             CHECK(floor.block.centre().y() > 0.2);
+        }
+    }
+}
+
+TEST_CASE("of two unlike bodies the one that gives way more says more of what comes back") {
+    constexpr double kSpeed = 0.1;
+    for (const bool soft_is_dull : {false, true}) {
+        for (const bool turned : {false, true}) {
+            Material soft = kSpringy, hard = kSpringy;
+            hard.young_modulus = 8 * soft.young_modulus;
+            soft.restitution = soft_is_dull ? 0.3 : 1;
+            hard.restitution = soft_is_dull ? 1 : 0.3;
+            Aggregate low = make_block(2, 2, 2, 0.1, soft), high = make_block(2, 2, 2, 0.1, hard);
+            place(high, {Quat::Identity(), Vec3(0, 0.2005, 0)});
+            for (double& v : high.particle_velocity.y) v = -kSpeed;
+            SimSettings settings = motion_settings();
+            settings.contact_stiffness = 0.01;  // so that contacts give way more than the blocks
+            const Apparatus nothing;
+            std::vector<Aggregate*> bodies{&low, &high};
+            if (turned) std::swap(bodies[0], bodies[1]);
+            Simulation simulation(bodies, nothing, settings);
+            simulation.advance(still(0), still(0.8));
+            // Each gives back of the energy in its part of the give: 8 to 1.
+            const double e =
+                std::sqrt((8 * std::pow(soft.restitution, 2) + std::pow(hard.restitution, 2)) / 9);
+            const double back = high.mean_velocity().y() - low.mean_velocity().y();
+            INFO("soft is dull " << soft_is_dull << ", turned " << turned);
+            CHECK(back / kSpeed == Approx(e).epsilon(0.05));
         }
     }
 }
