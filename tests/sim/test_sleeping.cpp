@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/sleeping.h"
+
+#include <numbers>
+
 #include "base/parallel.h"
 #include "sim/advance.h"
+#include "sim/internal_damping.h"
 #include "tests/catch.h"
 #include "tests/sim/motion.h"
 
@@ -29,6 +34,7 @@ struct Ground {
     std::unique_ptr<Simulation> simulation;
     Pose floor{Quat::Identity(), Vec3(0, -0.5, 0)};
     double time = 0;
+    std::optional<double> load;  // its strength, where there is one
     FrameReport last;
 
     explicit Ground(const std::vector<double>& heights, bool sleep = true,
@@ -46,6 +52,7 @@ struct Ground {
     Drive drive() const {
         Drive d = still(time);
         d.world_from_tool.push_back(floor);
+        if (load) d.load_strength.push_back(*load);
         return d;
     }
     // One frame in which the floor moves by this.
@@ -71,6 +78,17 @@ double heaviest_remainder(const FrameReport& r) {
     double most = 0;
     for (const Books& b : r.body) most = std::max(most, std::abs(b.remainder));
     return most;
+}
+
+// Whether a body that lies where it is, with this kinetic energy [J], rests by then.
+bool rests_by(const Aggregate& m, double until, double kinetic, double gravity = 9.81) {
+    Aggregate lies = m;
+    SimSettings settings = motion_settings();
+    settings.gravity = Vec3(0, -gravity, 0);
+    Sleeping watch({&lies}, settings);
+    bool rests = false;
+    for (int n = 0; n <= 1000; ++n) rests = watch.rests(0, until * n / 1000, kinetic);
+    return rests;
 }
 
 }  // namespace
@@ -139,11 +157,64 @@ TEST_CASE("a sleeper wakes when its floor moves or its weight changes") {
     CHECK(ground.body[0].centre().y() > y + 0.05);
 }
 
-TEST_CASE("what swings, slides or stands at the top of its way does not sleep") {
-    SECTION("thrown up") {
-        Ground ground({0.5});
-        for (double& v : ground.body[0].particle_velocity.y) v = 3;
-        for (int n = 0; n < 60; ++n) CHECK(ground.go(0.01).asleep == 0);
+TEST_CASE("a sleeper wakes when a load on it changes") {
+    Ground ground({0.01});
+    Aggregate& block = ground.body[0];
+    ground.apparatus.load.push_back(push_below(block, 0.9 * block.mass() * 9.81));
+    ground.load = 0;
+    REQUIRE(ground.settle().asleep == 1);
+    const double x = block.centre().x();
+    Drive pushed = ground.drive();
+    const Drive now = pushed;
+    pushed.time += 0.2;
+    pushed.load_strength = {1};
+    CHECK(ground.simulation->advance(now, pushed).asleep == 0);
+    CHECK(block.centre().x() > x + 1e-3);
+}
+
+TEST_CASE("what a body still trembles by as it falls asleep stands in its books as damped") {
+    Material springy = kSoft;
+    springy.damping_ratio = 0.02, springy.restitution = 1;
+    Ground ground({0}, true, springy);
+    Simulation simulation(ground.body[0], ground.apparatus, ground.settings);
+    const auto at = [&](double time) {
+        Drive d = ground.drive();
+        d.time = time;
+        d.gravity_strength = std::min(1.0, time);  // hardly bounces
+        return d;
+    };
+    FrameReport before, last;
+    double time = 0;
+    for (; last.asleep == 0 && time < 8; time += 0.02) {
+        before = last;
+        last = simulation.advance(at(time), at(time + 0.02));
+    }
+    const double trembles = std::abs(before.kinetic);
+    REQUIRE(last.asleep == 1);
+    REQUIRE(trembles > 1e-9 * ground.body[0].mass() * 9.81 * 0.1);
+    CHECK(last.kinetic == 0);
+    CHECK(std::abs(last.remainder - before.remainder) < 0.01 * trembles);
+}
+
+TEST_CASE("what lies still sleeps after ten times what it takes to fall by a cell, or to swing") {
+    const Aggregate block = make_block(3, 2, 3, 0.1, kSpringy);
+    const double fall = std::sqrt(2 * 0.1 / 9.81);  // by a cell [s]
+    CHECK_FALSE(rests_by(block, 9.9 * fall, 0));
+    CHECK(rests_by(block, 10.1 * fall, 0));
+    CHECK_FALSE(rests_by(block, 1000, 0, 0));  // without gravity nothing lies
+    const Aggregate reed = make_block(40, 1, 1, 0.01, kSpringy);
+    const double swing = 2 * std::numbers::pi / slowest_frequency(reed);
+    REQUIRE(swing > 5 * std::sqrt(2 * 0.01 / 9.81));
+    CHECK_FALSE(rests_by(reed, 9.9 * swing, 0));
+    CHECK(rests_by(reed, 10.1 * swing, 0));
+}
+
+TEST_CASE("what trembles, slides or creeps does not sleep") {
+    SECTION("trembling in its place") {
+        const Aggregate block = make_block(3, 2, 3, 0.1, kSpringy);
+        const double lifted = block.mass() * 9.81 * 0.1;  // by a cell [J]
+        CHECK(rests_by(block, 10, 0.5e-6 * lifted));
+        CHECK_FALSE(rests_by(block, 10, 2e-6 * lifted));
     }
     SECTION("sliding on ice") {
         Material ice = kSoft;
@@ -154,15 +225,22 @@ TEST_CASE("what swings, slides or stands at the top of its way does not sleep") 
         REQUIRE(ground.last.asleep == 1);
         Ground slow({0}, true, ice);
         slow.apparatus.tool[0].friction = 0;
-        for (double& v : slow.body[0].particle_velocity.x) v = 0.002;
+        // So slowly that the way tells, and not the energy.
+        for (double& v : slow.body[0].particle_velocity.x) v = 0.001;
         const double from = slow.body[0].centre().x();
-        for (int n = 0; n < 100; ++n) CHECK(slow.go(0.05).asleep == 0);
-        CHECK(slow.body[0].centre().x() - from == Approx(0.01).epsilon(0.02));
+        for (int n = 0; n < 50; ++n) CHECK(slow.go(0.05).asleep == 0);
+        CHECK(slow.last.kinetic < 0.6e-6 * slow.body[0].mass() * 9.81 * 0.1);
+        CHECK(slow.body[0].centre().x() - from == Approx(0.0025).epsilon(0.02));
     }
-    SECTION("without gravity") {
-        Ground ground({1});
-        ground.settings.gravity.setZero();
-        for (int n = 0; n < 40; ++n) CHECK(ground.go(0.05).asleep == 0);
+    SECTION("one particle creeping") {
+        Aggregate block = make_block(3, 2, 3, 0.1, kSpringy);
+        SimSettings settings = motion_settings();
+        settings.gravity = Vec3(0, -9.81, 0);
+        Sleeping watch({&block}, settings);
+        for (int n = 0; n <= 1000; ++n) {
+            block.particle_position.x[5] += 1e-6;  // 0.1 mm a second
+            REQUIRE_FALSE(watch.rests(0, 0.01 * n, 0));
+        }
     }
 }
 
