@@ -255,21 +255,31 @@ TEST_CASE("drag does not grow as the gap of a crack or a cut opens") {
     CHECK(power() == Approx(before));
 }
 
-TEST_CASE("a drag is bounded as long as it is too strong for its steps, and no longer") {
+TEST_CASE("a drag too strong for its steps is bounded: it stops no particle within one") {
     Aggregate m = make_block(2, 2, 2, 0.1, kSpringy);
     SimSettings settings = motion_settings();
     settings.medium_density = 1000;
     settings.drag_coefficient = 1;
-    SurfaceDrag drag(m, settings, 1e-4);
-    const auto is_bounded = [&](double speed) {
-        for (std::size_t p = 0; p < m.particle_count(); ++p)
-            m.particle_velocity.set(p, Vec3(speed, 0, 0));
+    constexpr double kStep = 1e-4;
+    SurfaceDrag drag(m, settings, kStep);
+    // The most that any particle loses of its speed, and whether that is bounded.
+    const auto braked = [&](double speed) {
+        for (double& v : m.particle_velocity.x) v = speed;
         Vec3Array force;
         force.resize(m.particle_count());
-        return drag.add_forces(m, force).bounded;
+        const bool bounded = drag.add_forces(m, force).bounded;
+        double most = 0;
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            most = std::max(most, -force.x[p] * kStep / (m.particle_mass[p] * speed));
+        }
+        return std::pair(most, bounded);
     };
-    CHECK(is_bounded(1e6));
-    CHECK_FALSE(is_bounded(1));
+    const auto [most, bounded] = braked(1e6);
+    CHECK(bounded);
+    CHECK(most == Approx(0.75));  // a corner, of three faces a quarter each
+    const auto [little, free] = braked(1);
+    CHECK_FALSE(free);
+    CHECK(little == Approx(braked(0.5).first * 2));
 }
 
 TEST_CASE("a medium meets what a cut has laid open") {

@@ -4,6 +4,7 @@
 #include "sim/cell_volume.h"
 #include "sim/quasistatic.h"
 #include "tests/catch.h"
+#include "tests/sim/loads_fixture.h"
 #include "tests/sim/machines.h"
 
 using namespace swage;
@@ -111,6 +112,34 @@ TEST_CASE("a bar too short to be held slips out of its tools, and this is report
     int slipped = 0;
     for (const FrameReport& r : bent.report) slipped += !r.warning.empty();
     CHECK(slipped > 0);
+}
+
+TEST_CASE("what a load has pressed onto a tool has not slipped off it once that eases") {
+    Aggregate bar = make_block(12, 2, 2, 0.05, kSoft);
+    Apparatus apparatus;
+    apparatus.name = "rest";
+    apparatus.grip.push_back(
+        hold(bar, points_where(bar, [](const Vec3& x) { return x.x() < -0.299; })));
+    apparatus.load.push_back(force_on(
+        bar, points_where(bar, [](const Vec3& x) { return x.x() > 0.299; }), Vec3(0, -20, 0)));
+    apparatus.tool.push_back({"rest", BoxShape{Vec3(0.1, 0.1, 0.4), 0.01}, 0.3});
+    Simulation simulation(bar, apparatus, SimSettings{});
+    const auto at = [&](double time, double strength) {
+        Drive d = drive_of(apparatus, time, strength);
+        d.world_from_tool.push_back({Quat::Identity(), Vec3(0.25, -0.101, 0)});
+        return d;
+    };
+    const std::vector<double> strength = {0, 0.5, 1, 0.5, 0.1, 0};
+    double most = 0, last = 0;
+    for (std::size_t n = 1; n < strength.size(); ++n) {
+        const FrameReport r =
+            simulation.advance(at(n - 1.0, strength[n - 1]), at(double(n), strength[n]));
+        last = r.load[0].force.norm();
+        most = std::max(most, last);
+        CHECK(r.warning.empty());
+    }
+    CHECK(most > 5);
+    CHECK(last < 0.05 * most);  // it has been let go of
 }
 
 TEST_CASE("twisting a square bar takes the torque of Saint-Venant, from above as cells refine") {
