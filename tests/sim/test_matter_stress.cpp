@@ -164,3 +164,50 @@ TEST_CASE("what has softened is told to bear no more pressure than its forces ar
         CHECK(told[0].stress[0] == Approx(virial / cell.lattice.cell_volume()).epsilon(1e-6));
     }
 }
+
+TEST_CASE("where matter with a back stress yields at the most is told with what is left of that") {
+    Material metal = material_of(Elasticity::hencky, 0.3);
+    metal.yield_stress = 1e6, metal.hardening = 2e7;
+    metal.back_stress = 8e5, metal.back_strain = 0.01;
+    Aggregate block = make_block(2, 2, 2, 0.01, metal);
+    CHECK(stress_samples(block, {0})[0].yields_at == Approx(1.8e6));
+    block.cell_history.assign(block.cell_fill.size());
+    block.cell_history.hardening()[0] = 0.01f;
+    CHECK(stress_samples(block, {0})[0].yields_at ==
+          Approx(1e6 + 2e5 + 8e5 * std::exp(-1.0)).epsilon(1e-5));
+}
+
+TEST_CASE("springs of partly filled cells bear by what there is of them") {
+    Material springs = material_of(Elasticity::hencky, 0.25);
+    springs.mechanics = Mechanics::springs;
+    Aggregate rod =
+        test::make_matter(Vec3::Zero(), 0.01, Vec3i(3, 1, 1), {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+                          {0.4f, 0.4f, 0.4f}, springs);
+    constexpr double kStrain = 1e-5;
+    deform(rod, [](const Vec3& x) -> Vec3 { return stretch(1 + kStrain, 1 - 0.25 * kStrain) * x; });
+    for (const StressSample& one : stress_samples(rod, all_of(rod))) {
+        CHECK(one.stress[0] == Approx(kModulus * kStrain).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a cell that a blade has cut into bears its stress also where its own cannot break") {
+    Material brittle = material_of(Elasticity::hencky, 0.25);
+    brittle.strength = 1e7, brittle.toughness = 1e4;
+    Aggregate block = make_block(6, 2, 2, 0.01, brittle);
+    block.inset = {material_of(Elasticity::hencky, 0.25)};
+    block.cell_material.assign(block.cell_fill.size(), 0);
+    CellId cut = -1;
+    for (const CellId cell : all_of(block)) {
+        const Vec3i site = block.lattice.cell_site(cell);
+        block.cell_material[cell] = site.x() >= 3;
+        if (site == Vec3i(4, 0, 0)) cut = cell;
+    }
+    // One edge of it, across the pull.
+    block.connection[1].weight.set(block.lattice.cell_corners(cut)[0], 0);
+    constexpr double kStrain = 1e-5;
+    deform(block,
+           [](const Vec3& x) -> Vec3 { return stretch(1 + kStrain, 1 - 0.25 * kStrain) * x; });
+    const StressSample one = stress_samples(block, {cut})[0];
+    REQUIRE_FALSE(one.sound);
+    CHECK(one.stress[0] == Approx(kModulus * kStrain).epsilon(0.1));
+}
