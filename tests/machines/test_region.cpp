@@ -144,20 +144,43 @@ TEST_CASE("what of a surface looks to a side is told part by part, with how much
 
 TEST_CASE("a force spreads over what is stretched as that lies, and acts where it is said to") {
     Aggregate matter = upright();
-    deform(matter, [](const Vec3& x) {  // its upper half is drawn out and turned
-        const double y = x.y() > 0 ? 3 * x.y() : x.y();
-        return Vec3(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()) * Vec3(x.x(), y, x.z()));
+    const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).matrix();
+    deform(matter, [&](const Vec3& x) {  // its upper half is drawn out to three times its length
+        return Vec3(turn * Vec3(x.x(), x.y() > 0 ? 3 * x.y() : x.y(), x.z()));
     });
     const Machine machine = with(matter, push(Side::top));
     const Load& load = machine.apparatus.load.at(0);
     Vec3 middle = Vec3::Zero(), sum = Vec3::Zero();
-    double all = 0;
+    double all = 0, drawn = 0;
     for (std::size_t n = 0; n < load.point.size(); ++n) {
-        middle += load.force[n].norm() * matter.surface_position(std::size_t(load.point[n]));
-        all += load.force[n].norm();
+        const std::size_t point = std::size_t(load.point[n]);
+        const double force = load.force[n].norm();
+        middle += force * matter.surface_position(point);
+        if (matter.surface_reference(point).y() > 0) drawn += force;
+        all += force;
         sum += load.force[n];
     }
     CHECK(sum.norm() == Approx(all));
+    CHECK(drawn / all == Approx(0.75));  // of the area
+    CHECK((middle / all - turn * Vec3(0, 0.4, 0.2)).norm() < 1e-6);
     REQUIRE(machine.load_on.at(0).size() == 1);
-    CHECK((middle / all - machine.load_on[0][0].middle).norm() < 1e-9);
+    CHECK(machine.load_on[0][0].area == Approx(1.6 * 0.3));
+    CHECK((machine.load_on[0][0].middle - turn * Vec3(0, 0.4, 0.2)).norm() < 1e-6);
+}
+
+TEST_CASE("a pressure whose box cuts patches off a surface does not press it all round") {
+    const Aggregate ball = make_shape([](const Vec3& x) { return x.norm() - 0.75; },
+                                      Vec3::Constant(-0.8), Vec3i(16, 16, 16), 0.1);
+    const auto gas_up_to = [&](const char* end) {
+        LoadSpec gas;
+        gas.name = "gas";
+        gas.pressure = "1000";
+        gas.box = {{{"-length", "-height", "-width"}, {end, "height", "width"}}};
+        return with(ball, gas).apparatus.load.at(0);
+    };
+    CHECK(gas_up_to("length").closed);
+    const Load cut = gas_up_to("0.499*length");
+    CHECK(cut.point.size() == ball.surface.size());  // something of each patch
+    CHECK_FALSE(cut.share.empty());
+    CHECK_FALSE(cut.closed);
 }

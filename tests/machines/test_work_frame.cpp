@@ -3,6 +3,7 @@
 #include "machines/machine.h"
 #include "tests/catch.h"
 #include "tests/machines/bodies.h"
+#include "tests/shared/block.h"
 
 using namespace swage;
 
@@ -67,6 +68,17 @@ TEST_CASE("the work frame is placed by the surface as it is now, not as it was m
     const WorkFrame frame = place_work_frame(body);
     CHECK(frame.size.x() == Approx(2));
     CHECK(frame.world_from_work.translation.x() == Approx(4));
+}
+
+TEST_CASE("how far the lattice reaches beyond the surface is told up to ten cells") {
+    Aggregate matter = test::make_block(3, 8, 4, 0.1, Material{});
+    const WorkFrame frame = place_work_frame(matter);
+    const auto reach = [&] { return work_piece_variables(matter, frame).at("lattice_reach"); };
+    CHECK(reach() == Approx(0).margin(1e-9));
+    matter.particle_position.add(0, Vec3(0, -0.5, 0));
+    CHECK(reach() == Approx(0.5));
+    matter.particle_position.add(0, Vec3(0, -50, 0));  // driven far off
+    CHECK(reach() == Approx(1));
 }
 
 TEST_CASE("the longest side is that of the skin, whatever samples of the surface miss of it") {
