@@ -62,6 +62,16 @@ TEST_CASE("what is molded anew moves on, place by place, as the matter that was 
     }
 }
 
+TEST_CASE("what is molded anew about another centre keeps its angular momentum about the origin") {
+    Aggregate old = make_block(8, 4, 4, 0.1, Material{}), anew = old;
+    for (double& y : anew.particle_position.y) y += 0.03;
+    set_in_motion(
+        old, [](const Vec3& x) { return Vec3(Vec3(3, -1, 0.5) + Vec3(0.2, 0.5, -0.7).cross(x)); });
+    carry_motion(old, anew);
+    const Motion before = motion_of(old), after = motion_of(anew);
+    CHECK((after.spin - before.spin).norm() < 1e-12 * before.momentum.norm());
+}
+
 TEST_CASE("a swing within a body is carried as it is") {
     Aggregate old = make_block(8, 4, 4, 0.1, Material{});
     set_in_motion(old, [](const Vec3& x) { return Vec3(0, std::cos(3 * x.x()), 0); });

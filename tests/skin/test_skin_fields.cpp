@@ -168,6 +168,33 @@ TEST_CASE("no line goes beyond what a material yields at, nor to less flow than 
     CHECK(is[1][2] == Approx(0.5));
 }
 
+TEST_CASE("slivers of cells say hardly anything of the stress at the surface") {
+    Aggregate matter = make_block(5, 4, 4, 0.01, Material{});
+    for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+        if (matter.lattice.cell_site(static_cast<CellId>(c)).y() < 3) continue;
+        matter.cell_fill[c] = 0.05f;
+        matter.cell_centroid.set(c, Eigen::Vector3f(0, -0.475f, 0));
+    }
+    const auto more_in_slivers = [](const Vec3& x) { return x.y() > 0.01 ? 5.0 : 1.0; };
+    CHECK(fields_of(matter, {{0, 0.0104, 0}}, more_in_slivers)[1][0] == Approx(1).epsilon(0.3));
+}
+
+TEST_CASE("strength is used by the largest strain, of springs by their own Poisson's ratio") {
+    for (const Mechanics mechanics : {Mechanics::cells, Mechanics::springs}) {
+        Material material;
+        material.mechanics = mechanics;
+        material.poisson_ratio = 0.45;  // of which springs do not know
+        const Aggregate matter = make_block(4, 4, 4, 0.01, material);
+        const Mount mount = mount_mesh({{0, 0.02, 0}}, matter, SkinKind::mount);
+        std::vector<StressSample> samples =
+            pulled(matter, cells_under(mount, matter), [](const Vec3&) { return 1.0; });
+        for (StressSample& one : samples) one.stress[2] = 1, one.breaks_at = 2;
+        const double ratio = mechanics == Mechanics::springs ? 0.25 : 0.45;
+        CHECK(skin_fields(mount, matter, samples, {SkinField::strength_use})[0][0] ==
+              Approx((1 - ratio) / 2).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("fields are the same bytes at any number of threads") {
     const Aggregate matter = make_block(9, 7, 8, 0.01, Material{});
     const auto of = [](const Vec3& x) { return std::sin(300 * x.x()) + x.y() * x.z(); };

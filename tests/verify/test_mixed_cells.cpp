@@ -3,16 +3,19 @@
 #include <random>
 
 #include "base/parallel.h"
+#include "geometry/box_mesh.h"
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
 #include "sim/cell_tangent.h"
 #include "sim/lattice_forces.h"
 #include "sim/material_laws.h"
 #include "sim/mixed_cells.h"
+#include "sim/strength_use.h"
 #include "sim/vector_clones.h"
 #include "sim/vector_sums.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
 #include "tests/sim/coarse_error.h"
 #include "tests/sim/force_checks.h"
 #include "tests/sim/halved_cell.h"
@@ -358,6 +361,27 @@ TEST_CASE("no place at which forces were asked for leaves a trace in the jumps o
     }
     limit_vector_width(0);
     set_thread_count(0);
+}
+
+TEST_CASE("a cell of two materials uses as much as the one of them that is nearer to its end") {
+    Material weak{.young_modulus = 1e6, .poisson_ratio = 0.3, .yield_stress = 1e3};
+    weak.strength = 2e3, weak.toughness = 100;
+    Material firm = weak;
+    firm.yield_stress = firm.strength = 1e5, firm.toughness = 1e4;
+    MoldSettings settings;
+    settings.across = 1;
+    for (const bool body_is_weak : {false, true}) {
+        Aggregate m = mold(box_mesh({0, 0, 0}, {4, 1, 1}), body_is_weak ? weak : firm, settings,
+                           {{box_mesh({-1, 0.5, -1}, {5, 2, 2}), body_is_weak ? firm : weak}});
+        REQUIRE(m.mixed_cell.size() == 4);
+        const double strain = 0.5e-3, thin = 1 - 0.3 * strain;
+        test::deform(
+            m, [&](const Vec3& x) -> Vec3 { return x.cwiseProduct(Vec3(1 + strain, thin, thin)); });
+        const StrengthUse::Most most = StrengthUse(m).beyond(m, 0, 0);
+        INFO("weak body " << body_is_weak);
+        CHECK(most.yield.share == Approx(0.5).epsilon(0.01));
+        CHECK(most.strength.share == Approx(0.25).epsilon(0.02));
+    }
 }
 
 TEST_CASE("damping does not hold what flows, of two materials neither") {
