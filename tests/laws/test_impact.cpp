@@ -57,7 +57,8 @@ double rebound(double e, double mass, double k, double speed) {
     const double step = 1e-4 * std::sqrt(mass / k);
     Stone stone{mass, step, Vec3::Zero(), Vec3(0, -speed, 0)};
     stone.x.y() = 1e-3 * step * speed;
-    for (int n = 0; n < 2'000'000 && (n < 1000 || stone.x.y() <= 0); ++n) stone.go(law_of(k, e));
+    const ImpactLaw law = law_of(k, e);
+    for (int n = 0; n < 2'000'000 && (n < 1000 || stone.x.y() <= 0); ++n) stone.go(law);
     return stone.v.y() / speed;
 }
 
@@ -68,7 +69,7 @@ TEST_CASE("a mass keeps the asked share of its speed, whatever its size, speed a
         for (const auto& [m, k, v] :
              {std::array{1.0, 1e4, 1.0}, std::array{1e-3, 1e2, 30.0}, std::array{1e3, 1e8, 1e-3}}) {
             INFO(e << ' ' << m << ' ' << k << ' ' << v);
-            CHECK(std::abs(rebound(e, m, k, v) - e) < 0.01 * e);
+            CHECK(std::abs(rebound(e, m, k, v) - e) < 1e-6 * e);
         }
     }
     CHECK(rebound(0, 1, 1e4, 1) == Approx(kDullest).epsilon(0.01));
@@ -137,17 +138,21 @@ TEST_CASE("a contact never pulls unless it sticks, and never gives energy") {
         const double depth = std::max(0.0, -stone.x.y());
         const double start = stone.energy() + 0.5 * law.stiffness * depth * depth;
         double given = 0, least = 0;
+        double regained = 0, too_much = 0;  // by dashpots; held beyond what was put in [J]
         for (int n = 0; n < 60'000; ++n) {
             if (n % 3000 == 0) stone.pull = 8 * Vec3(any(random), any(random) - 0.4, any(random));
             const Vec3 before = stone.x;
             stone.go(law);
             given += stone.pull.dot(stone.x - before);
             least = std::min(least, stone.normal);
-            REQUIRE(stone.damped > -1e-9 - 0.02 * (start + std::abs(given)));
+            const double slack = 0.02 * (start + std::abs(given));
+            regained = std::max(-stone.damped - slack, regained);
             // A step may hold half a step's work of the spring back or before.
-            REQUIRE(stone.energy() <= start + given + 0.02 * (start + std::abs(given)) + 5e-3);
+            too_much = std::max(stone.energy() - start - given - slack - 5e-3, too_much);
         }
         CHECK(least >= -hold);
+        CHECK(regained < 1e-9);
+        CHECK(too_much <= 0);
     }
 }
 

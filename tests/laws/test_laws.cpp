@@ -156,7 +156,7 @@ TEST_CASE("the bound by which springs are passed over is one, and close where no
             frame_of(cell.springs, kSpringLayout).distortion(cell.springs.strain).stress(1);
         const double bound = most_stress(distortion, theta, low, high);
         CHECK(q <= bound * (1 + 1e-9) + 1e-5 * size);  // round-off of t^2 <i, i>
-        if (bound > 0) closest = std::max(closest, q / bound);
+        if (round % 5 > 0) closest = std::max(closest, q / bound);
     }
     CHECK(closest > 0.99);
 }
