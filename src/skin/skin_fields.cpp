@@ -121,18 +121,6 @@ class Fitter {
         return static_cast<std::uint8_t>(swage::material_at(*two, local - Vec3::Constant(0.5)));
     }
 
-    // Whether two parts of cells have a corner in common.
-    bool meet(std::size_t a, std::size_t b) const {
-        const Vec3i way = site_[b] - site_[a];
-        for (int c = 0; c < 8; ++c) {
-            if (!(sample_[a].corners >> c & 1)) continue;
-            const Vec3i at = corner_step(c) - way;
-            if ((at.array() < 0).any() || (at.array() > 1).any()) continue;
-            if (sample_[b].corners >> (at.x() + 2 * at.y() + 4 * at.z()) & 1) return true;
-        }
-        return false;
-    }
-
     void draw_lines() {
         line_.resize(sample_.size());
         parallel_each(sample_.size(), kPerChunk, [&](std::size_t n) { line_[n] = drawn(n); });
@@ -147,12 +135,12 @@ class Fitter {
         Parts mean = Parts::Zero();
         Mat3 spread = Mat3::Zero();
         Eigen::Matrix<double, kParts, 3> rise = Eigen::Matrix<double, kParts, 3>::Zero();
+        // Sound cells have all their corners, so that neighbours share some.
         const auto each = [&](const auto& act) {
             matter_.lattice.for_each_cell_around(site_[own], [&](CellId cell, const Vec3i&) {
                 for (int n = first_[cell]; n < first_[cell + 1]; ++n) {
                     const StressSample& other = sample_[n];
-                    if (!other.sound || other.material != s.material) continue;
-                    if (meet(own, n)) act(other);
+                    if (other.sound && other.material == s.material) act(other);
                 }
             });
         };
