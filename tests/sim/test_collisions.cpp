@@ -5,6 +5,7 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/kinetic_energy.h"
 #include "tests/sim/motion.h"
 
 using namespace swage;
@@ -73,15 +74,7 @@ TEST_CASE("a tumbling collision keeps momentum and angular momentum") {
         b.particle_velocity.set(p, Vec3(-0.5, -3, 0));
     }
     const Momenta before = momenta({&a, &b});
-    const double energy = [&] {
-        double sum = 0;
-        for (const Aggregate* one : {&a, &b}) {
-            for (std::size_t p = 0; p < one->particle_count(); ++p) {
-                sum += 0.5 * one->particle_mass[p] * one->particle_velocity.at(p).squaredNorm();
-            }
-        }
-        return sum;
-    }();
+    const double energy = kinetic_energy(a) + kinetic_energy(b);
     const Apparatus nothing;
     Simulation simulation({&a, &b}, nothing, motion_settings());
     FrameReport r;

@@ -3,6 +3,7 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/kinetic_energy.h"
 #include "tests/sim/machines.h"
 #include "tests/sim/motion.h"
 
@@ -76,16 +77,14 @@ TEST_CASE("what tumbling bodies leave in the books' remainder falls with the ste
         Aggregate a = make_block(5, 2, 2, 0.1, m), b = make_block(3, 3, 3, 0.09, m);
         place(b,
               {Quat(Eigen::AngleAxisd(0.6, Vec3(1, 1, 0.3).normalized())), Vec3(0.15, 0.32, 0.05)});
-        double energy = 0;
         for (std::size_t p = 0; p < a.particle_count(); ++p) {
             a.particle_velocity.set(p,
                                     Vec3(0, 2, 0) + Vec3(0, 0, 6).cross(a.particle_position.at(p)));
-            energy += 0.5 * a.particle_mass[p] * a.particle_velocity.at(p).squaredNorm();
         }
         for (std::size_t p = 0; p < b.particle_count(); ++p) {
             b.particle_velocity.set(p, Vec3(-0.5, -3, 0));
-            energy += 0.5 * b.particle_mass[p] * b.particle_velocity.at(p).squaredNorm();
         }
+        const double energy = kinetic_energy(a) + kinetic_energy(b);
         SimSettings settings = motion_settings();
         settings.step_safety = safety;
         const Apparatus nothing;

@@ -10,6 +10,7 @@
 #include "sim/moving_body.h"
 #include "sim/vector_sums.h"
 #include "tests/catch.h"
+#include "tests/sim/kinetic_energy.h"
 #include "tests/sim/motion.h"
 
 using namespace swage;
@@ -211,10 +212,7 @@ TEST_CASE("steps beyond the stable one are halved until energy keeps") {
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         m.particle_velocity.set(p, Vec3(p % 2 ? 0.1 : -0.1, p % 3 ? 0.1 : -0.1, 0));
     }
-    double start = 0;
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        start += 0.5 * m.particle_mass[p] * m.particle_velocity.at(p).squaredNorm();
-    }
+    const double start = kinetic_energy(m);
     SimSettings settings = motion_settings();
     settings.step_safety = 8;
     const Apparatus nothing;

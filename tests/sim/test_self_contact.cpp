@@ -6,6 +6,7 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/kinetic_energy.h"
 #include "tests/sim/motion.h"
 
 using namespace swage;
@@ -91,13 +92,7 @@ TEST_CASE("pieces after a cut do not pass through each other") {
                 block.particle_velocity.set(p, Vec3(0, -3, 0));
             }
         }
-        const double start = [&] {
-            double sum = 0;
-            for (std::size_t p = 0; p < block.particle_count(); ++p) {
-                sum += 0.5 * block.particle_mass[p] * block.particle_velocity.at(p).squaredNorm();
-            }
-            return sum;
-        }();
+        const double start = kinetic_energy(block);
         const Apparatus nothing;
         Simulation simulation(block, nothing, settings);
         double nearest = 1;

@@ -6,6 +6,7 @@
 #include "sim/advance.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/kinetic_energy.h"
 #include "tests/sim/motion.h"
 
 using namespace swage;
@@ -25,12 +26,10 @@ Flattened fly(double safety, double speed) {
                         .density = 1800,
                         .yield_stress = 3e4};
     Aggregate block = make_block(5, 6, 5, 0.01, clay);
-    double energy = 0;
     for (std::size_t p = 0; p < block.particle_count(); ++p) {
-        const double v = -speed * block.particle_position.y[p] / 0.03;
-        block.particle_velocity.y[p] = v;
-        energy += 0.5 * block.particle_mass[p] * v * v;
+        block.particle_velocity.y[p] = -speed * block.particle_position.y[p] / 0.03;
     }
+    const double energy = kinetic_energy(block);
     SimSettings settings = motion_settings();
     settings.step_safety = safety;
     const Apparatus nothing;
