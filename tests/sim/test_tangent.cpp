@@ -8,6 +8,7 @@
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
 #include "tests/sim/coarse_error.h"
+#include "tests/sim/shake.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -15,14 +16,6 @@ using namespace swage::test;
 namespace {
 
 constexpr double kSpacing = 0.1;
-
-void shake(Vec3Array& v, int seed, double by) {
-    std::mt19937 engine(seed);
-    std::uniform_real_distribution<double> draw(-1, 1);
-    for (auto* x : {&v.x, &v.y, &v.z}) {
-        for (double& c : *x) c += by * draw(engine);
-    }
-}
 
 // Random fills, centroids and positions; rows that are no multiple of a batch of lanes.
 Aggregate shaken_block(const Material& material) {
@@ -35,7 +28,7 @@ Aggregate shaken_block(const Material& material) {
         for (int i = 0; i < 3; ++i) centroid[i] = static_cast<float>(0.3 * draw(engine));
         m.cell_centroid.set(c, centroid);
     }
-    shake(m.particle_position, 3, 0.06 * kSpacing);
+    shake(m, 0.06 * kSpacing);
     return m;
 }
 
@@ -70,7 +63,7 @@ TEST_CASE("the tangent's product is how the forces change, flow included") {
         Aggregate m = shaken_block(material);
         LatticeForces forces(m);
         if (std::isfinite(material.yield_stress)) forces.commit(m);  // and flow on from there
-        shake(m.particle_position, 5, 0.01 * kSpacing);
+        shake(m, 0.01 * kSpacing, 5);
         const Vec3Array direction = random_direction(m.particle_count());
         CellTangent tangent(m, m.cell_fill);
         Vec3Array product;

@@ -9,6 +9,7 @@
 #include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/sim/force_checks.h"
+#include "tests/sim/shake.h"
 
 using namespace swage;
 
@@ -19,9 +20,9 @@ constexpr double kSpacing = 0.25;
 // Along a plane that holds its length.
 void cut(Aggregate& m) {
     const double far = 10, y = 0.4;
-    sever(m, crossed_connections(
-                 m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
-                     {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}}));
+    sever(m,
+          crossed_connections(m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
+                                  {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}}));
 }
 
 // A bar, of another material from `boundary` on.
@@ -38,14 +39,6 @@ Aggregate cut_bar(const Material& left, const Material& right, double boundary,
 }
 
 Material with_modulus(double modulus) { return {.young_modulus = modulus, .poisson_ratio = 0.25}; }
-
-void shake(Aggregate& m, double by, int seed = 3) {
-    std::mt19937 engine(seed);
-    std::uniform_real_distribution<double> draw(-1, 1);
-    for (auto* x : {&m.particle_position.x, &m.particle_position.y, &m.particle_position.z}) {
-        for (double& v : *x) v += by * kSpacing * draw(engine);
-    }
-}
 
 double largest_of(const Vec3Array& f) {
     double largest = 0;
@@ -64,7 +57,7 @@ TEST_CASE("a cut bar of two materials keeps each part's stiffness") {
     Vec3Array f[3];
     int n = 0;
     for (Aggregate* m : {&both, &left, &right}) {
-        shake(*m, 0.05);
+        test::shake(*m, 0.05 * kSpacing);
         LatticeForces(*m).find(*m, Flow::trial, f[n++]);
     }
     int seen = 0;
@@ -85,7 +78,7 @@ TEST_CASE("a cut bar of two materials pushes by minus the gradient of its energy
         // The boundary in the midst of cells.
         Aggregate m = cut_bar(soft, stiff, 2.1, false);
         REQUIRE(!m.mixed_cell.empty());
-        shake(m, 0.02);
+        test::shake(m, 0.02 * kSpacing);
         if (flowed) CHECK(LatticeForces(m).commit(m).plastic > 0);
         m.material.yield_stress = m.inset[0].yield_stress = 1e9;  // and no more
         cut(m);
@@ -167,7 +160,7 @@ TEST_CASE(
     soft.yield_stress = stiff.yield_stress = 1e9;
     for (bool flowed : {false, true}) {
         Aggregate m = cut_bar(soft, stiff, 2.1, false);
-        shake(m, 0.02);
+        test::shake(m, 0.02 * kSpacing);
         LatticeForces forces(m);
         for (MixedCell& cell : m.mixed_cell) cell.flowed[0].back() = flowed ? 1e-3f : 0.0f;
         cut(m);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <numbers>
-#include <random>
 
 #include "base/parallel.h"
 #include "geometry/box_mesh.h"
@@ -19,6 +18,7 @@
 #include "tests/sim/coarse_error.h"
 #include "tests/sim/force_checks.h"
 #include "tests/sim/halved_cell.h"
+#include "tests/sim/shake.h"
 #include "tests/sim/steady_flow.h"
 
 using namespace swage;
@@ -39,14 +39,6 @@ Aggregate bar_with_ball(const Material& outside, const Material& inside) {
     return mold(bar, outside, settings, {{ball, inside}});
 }
 
-void shake(Aggregate& m, double by, int seed = 3) {
-    std::mt19937 engine(seed);
-    std::uniform_real_distribution<double> draw(-1, 1);
-    for (auto* x : {&m.particle_position.x, &m.particle_position.y, &m.particle_position.z}) {
-        for (double& v : *x) v += by * kSpacing * draw(engine);
-    }
-}
-
 Material soft() { return {.young_modulus = 1e5, .poisson_ratio = 0.3}; }
 Material stiff() { return {.young_modulus = 1e7, .poisson_ratio = 0.2}; }
 Material rubber() {
@@ -62,7 +54,7 @@ TEST_CASE("cells of two materials push by minus the gradient of their energy") {
     for (const Material& outside : {soft(), rubber()}) {
         Aggregate m = bar_with_ball(outside, stiff());
         REQUIRE(m.mixed_cell.size() > 20);
-        shake(m, 0.05);
+        test::shake(m, 0.05 * kSpacing);
         LatticeForces forces(m);
         Vec3Array f;
         forces.find(m, Flow::trial, f);
@@ -213,10 +205,10 @@ TEST_CASE("the tangent of cells of two materials is how their forces change, flo
     for (const Material& outside : {soft(), yields, curved, rubbery}) {
         for (const Material& inside : {stiff(), yields, curved}) {
             Aggregate m = bar_with_ball(outside, inside);
-            shake(m, 0.02);
+            test::shake(m, 0.02 * kSpacing);
             LatticeForces forces(m);
             forces.commit(m);
-            shake(m, 0.005, 5);
+            test::shake(m, 0.005 * kSpacing, 5);
             const Vec3Array way = test::random_direction(m.particle_count());
             CellTangent tangent(m, m.cell_fill);
             Vec3Array product;
@@ -274,7 +266,7 @@ TEST_CASE("the tangent of cells of two materials is how their forces change, flo
 
 TEST_CASE("coarse cells of two materials are their tangent seen through the coarse corners") {
     Aggregate m = bar_with_ball(soft(), stiff());
-    shake(m, 0.02);
+    test::shake(m, 0.02 * kSpacing);
     for (const Vec3i& ratio : {Vec3i(2, 1, 2), Vec3i(2, 2, 2), Vec3i(4, 3, 1)}) {
         CHECK(test::coarse_error(m, ratio) < 1e-10);
     }
@@ -309,10 +301,10 @@ TEST_CASE("a body of two materials has its mass, its volume, and the same bits i
     const double ball = 0.8 * 0.8 * 0.8 * std::numbers::pi / 6;
     CHECK(m.volume() == Approx(2).epsilon(1e-6));
     CHECK(m.mass() == Approx(2 * 1000 + 7000 * ball).epsilon(0.01));
-    shake(m, 0.05);
+    test::shake(m, 0.05 * kSpacing);
     LatticeForces forces(m);
     CHECK(forces.commit(m).plastic > 0);
-    shake(m, 0.02, 5);
+    test::shake(m, 0.02 * kSpacing, 5);
     Vec3Array expected;
     forces.find(m, Flow::trial, expected);
     for (int threads : {1, 3}) {
@@ -339,7 +331,7 @@ TEST_CASE("no place at which forces were asked for leaves a trace in the jumps o
         LatticeForces forces(m);
         Vec3Array f;
         for (int seed : {3, 5, 8}) {
-            shake(m, 0.01, seed);
+            test::shake(m, 0.01 * kSpacing, seed);
             if (seed == 3) forces.commit(m);
             if (anew) {
                 LatticeForces(m).find(m, Flow::trial, f);
