@@ -195,6 +195,26 @@ TEST_CASE("strength is used by the largest strain, of springs by their own Poiss
     }
 }
 
+TEST_CASE("where a connection has broken all of the strength is told to be used") {
+    Aggregate matter = make_block(4, 4, 4, 0.01, Material{});
+    const auto used = [&] {
+        const Mount mount = mount_mesh({{0.004, 0.02, 0}}, matter, SkinKind::mount);
+        std::vector<StressSample> samples =
+            pulled(matter, cells_under(mount, matter), [](const Vec3&) { return 1.0; });
+        for (StressSample& one : samples) one.breaks_at = 4;
+        return skin_fields(mount, matter, samples, {SkinField::strength_use})[0][0];
+    };
+    CHECK(used() == Approx(0.25));
+    test::sever_plane(matter, Vec3(0.001, 0, 0), Vec3::UnitX());
+    for (ConnectionArrays& all : matter.connection) {
+        all.damage.assign(matter.particle_count(), 0.0f);
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            if (all.weight[p] == 0) all.damage[p] = 1;
+        }
+    }
+    CHECK(used() == 1);
+}
+
 TEST_CASE("fields are the same bytes at any number of threads") {
     const Aggregate matter = make_block(9, 7, 8, 0.01, Material{});
     const auto of = [](const Vec3& x) { return std::sin(300 * x.x()) + x.y() * x.z(); };
