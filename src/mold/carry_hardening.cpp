@@ -7,6 +7,7 @@
 #include "laws/cell_return.h"
 #include "matter/cell_middle.h"
 #include "mold/cells_there.h"
+#include "mold/shared_matter.h"
 
 namespace swage {
 
@@ -31,20 +32,28 @@ Mat3 symmetric_in(const std::array<std::vector<float>, kCount>& row, CellId cell
     return m;
 }
 
-// The mean back stress of each cell, turned as its matter is, along the axes of the new one. What
-// is molded anew is without stress: no more of it than keeps that from flowing by itself.
-void carry_back_stress(const Aggregate& from, const std::vector<CellId>& like, Aggregate& to) {
-    if (from.cell_back.empty() || !to.material.shifts()) return;
-    if (to.material.mechanics == Mechanics::springs) return;
+// Bodies of several materials have none.
+bool has_back_stress(const Aggregate& from, const Aggregate& to) {
+    return !from.cell_back.empty() && to.inset.empty() && to.material.shifts() &&
+           to.material.mechanics != Mechanics::springs;
+}
+
+// A cell's mean back stress, turned as its matter is.
+Mat3 turned_back(const Aggregate& from, CellId cell) {
+    const Mat3 flowed = Mat3::Identity() + symmetric_in(from.cell_history.row, cell);
+    const Mat3 turn = nearest_rotation(middle_gradient(from, cell) * flowed);
+    return turn * symmetric_in(from.cell_back.row, cell) * turn.transpose();
+}
+
+// Along the axes of the new cells. What is molded anew is without stress: no more of it than keeps
+// that from flowing by itself.
+void lay_back_stress(const std::vector<Mat3>& back, Aggregate& to) {
     const Material& m = to.material;
     const CellModuli law = cell_moduli(m.young_modulus, m.poisson_ratio, to.lattice.spacing,
                                        m.yield_stress, m.hardening, m.flow_curve);
-    to.cell_back.assign(like.size());
-    for (std::size_t c = 0; c < like.size(); ++c) {
-        const Mat3 flowed = Mat3::Identity() + symmetric_in(from.cell_history.row, like[c]);
-        const Mat3 turn = nearest_rotation(middle_gradient(from, like[c]) * flowed);
-        const Mat3 own = symmetric_in(from.cell_back.row, like[c]);
-        Mat3 strain = turn * own * turn.transpose();
+    to.cell_back.assign(back.size());
+    for (std::size_t c = 0; c < back.size(); ++c) {
+        Mat3 strain = back[c];
         const double gathered = to.cell_history.hardening()[c];
         const double radius = mean_flow_stress(law, gathered, 0) +
                               m.back_stress * portable::expm1(-gathered / m.back_strain);
@@ -75,64 +84,113 @@ float hardening_of(const Aggregate& body, CellId cell, std::size_t material) {
     return body.cell_history.hardening_of(cell);
 }
 
-// Of each material what it had itself, there or as near as it was.
-void carry_by_material(const Aggregate& from, Aggregate& to) {
-    struct Part {
-        std::size_t material;
-        float* hardening;
-    };
+// Of each new part what the old ones have that share it.
+struct Carried {
+    std::vector<double> hardening;
+    std::vector<Mat3> back;  // empty where there is none
+};
+
+// Where no old part reaches: as the nearest of its material.
+void fill_gaps(const Aggregate& from, const Aggregate& to, const std::vector<MatterPart>& part,
+               const std::vector<double>& share, Carried& carried) {
+    std::vector<std::size_t> gap;
     std::vector<Vec3> place;
-    std::vector<Part> part;
-    to.cell_history.assign(to.cell_fill.size());
-    const auto add = [&](CellId cell, const Eigen::Vector3f& centroid, std::size_t material,
-                         float& hardening) {
-        place.push_back(cell_middle(to, cell) + to.lattice.spacing * centroid.cast<double>());
-        part.push_back({material, &hardening});
-    };
-    for (std::size_t c = 0; c < to.cell_fill.size(); ++c) {
-        const auto cell = static_cast<CellId>(c);
-        if (to.mixed_at(cell) != nullptr) continue;
-        add(cell, to.cell_centroid[c], to.material_number(cell), to.cell_history.hardening()[c]);
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        if (share[n] > 0) continue;
+        gap.push_back(n);
+        place.push_back(cell_middle(to, part[n].cell) + to.lattice.spacing * part[n].centroid);
     }
-    for (MixedCell& mixed : to.mixed_cell) {
-        for (const int m : {0, 1}) {
-            add(mixed.cell, mixed.centroid[m], mixed.material[m], mixed.flowed[m].back());
-        }
-    }
+    if (gap.empty()) return;
     const std::vector<CellId> like = suited_cells_there(
         from, place,
-        [&](std::size_t n, CellId cell) { return holds(from, cell, part[n].material); });
-    for (std::size_t n = 0; n < part.size(); ++n) {
-        if (like[n] >= 0) *part[n].hardening = hardening_of(from, like[n], part[n].material);
+        [&](std::size_t n, CellId cell) { return holds(from, cell, part[gap[n]].material); });
+    for (std::size_t n = 0; n < gap.size(); ++n) {
+        if (like[n] < 0) continue;
+        carried.hardening[gap[n]] = hardening_of(from, like[n], part[gap[n]].material);
+        if (!carried.back.empty()) carried.back[gap[n]] = turned_back(from, like[n]);
     }
+}
+
+// Of each material hardening times mass, as its mean: what is molded anew may have another volume.
+// Of what has no cell any more nothing is left.
+void keep_means(const Aggregate& from, const std::vector<MatterPart>& old,
+                const std::vector<MatterPart>& part, std::vector<double>& hardening) {
+    struct Sum {
+        double volume = 0, hardening = 0;
+        double mean() const { return volume > 0 ? hardening / volume : 0; }
+    };
+    std::vector<Sum> had(from.material_count()), has(from.material_count());
+    const auto add = [](double volume, double gathered, Sum& sum) {
+        sum.volume += volume, sum.hardening += volume * gathered;
+    };
+    for (const MatterPart& one : old) {
+        add(one.volume, hardening_of(from, one.cell, one.material), had[one.material]);
+    }
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        add(part[n].volume, hardening[n], has[part[n].material]);
+    }
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        const std::size_t m = part[n].material;
+        const double mean = had[m].mean(), found = has[m].mean();
+        hardening[n] = found > 0 ? hardening[n] * (mean / found) : mean;
+    }
+}
+
+Carried carried_to(const Aggregate& from, const Aggregate& to,
+                   const std::vector<MatterPart>& part) {
+    const std::vector<MatterPart> old = matter_parts(from);
+    std::vector<double> share(part.size(), 0.0);
+    Carried carried;
+    carried.hardening.assign(part.size(), 0.0);
+    if (has_back_stress(from, to)) carried.back.assign(part.size(), Mat3::Zero());
+    int latest = -1;
+    double hardening = 0;
+    Mat3 back = Mat3::Zero();
+    for_each_shared(from, old, to, part, [&](const SharedMatter& one) {
+        if (one.from != latest) {
+            latest = one.from;
+            const MatterPart& own = old[one.from];
+            hardening = hardening_of(from, own.cell, own.material);
+            if (!carried.back.empty()) back = turned_back(from, own.cell);
+        }
+        share[one.to] += one.volume;
+        carried.hardening[one.to] += one.volume * hardening;
+        if (!carried.back.empty()) carried.back[one.to] += one.volume * back;
+    });
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        if (!(share[n] > 0)) continue;
+        carried.hardening[n] /= share[n];
+        if (!carried.back.empty()) carried.back[n] /= share[n];
+    }
+    fill_gaps(from, to, part, share, carried);
+    keep_means(from, old, part, carried.hardening);
+    return carried;
 }
 
 }  // namespace
 
 void carry_hardening(const Aggregate& from, Aggregate& to) {
     if (!from.has_flowed()) return;
-    if (!from.inset.empty()) {
-        carry_by_material(from, to);
-        return;
-    }
+    const std::vector<MatterPart> part = matter_parts(to);
+    const Carried carried = carried_to(from, to, part);
     const std::size_t count = to.cell_fill.size();
-    std::vector<Vec3> place;
-    for (std::size_t c = 0; c < count; ++c) {
-        place.push_back(cell_middle(to, static_cast<CellId>(c)) +
-                        to.lattice.spacing * to.cell_centroid[c].cast<double>());
-    }
-    const std::vector<CellId> like = cells_there(from, place);
-    std::vector<float>& hardening = to.cell_history.hardening();
     if (to.material.mechanics == Mechanics::springs) {
         for (auto& slot : to.cell_plastic) slot.assign(count, 0.0f);
-        hardening.resize(count);
+        to.cell_history.hardening().resize(count);
     } else {
         to.cell_history.assign(count);
     }
-    for (std::size_t c = 0; c < count; ++c) {
-        hardening[c] = from.cell_history.hardening()[static_cast<std::size_t>(like[c])];
+    auto mixed = to.mixed_cell.begin();
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        const auto hardening = static_cast<float>(carried.hardening[n]);
+        if (part[n].mixed < 0) {
+            to.cell_history.hardening()[part[n].cell] = hardening;
+            continue;
+        }
+        mixed->flowed[part[n].mixed].back() = hardening;
+        if (part[n].mixed == 1) ++mixed;
     }
-    carry_back_stress(from, like, to);
+    if (!carried.back.empty()) lay_back_stress(carried.back, to);
 }
 
 }  // namespace swage

@@ -2,10 +2,13 @@
 #include "mold/carry_hardening.h"
 
 #include "geometry/box_mesh.h"
+#include "matter/cell_middle.h"
+#include "matter/material_volumes.h"
 #include "mold/mold.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/shared/meshes.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -160,4 +163,136 @@ TEST_CASE("what flowed in cells of two materials alone is as hard once it is mol
         const bool there = material == 0 && at.x() < -0.02;  // where that cell ends
         CHECK(hardening == (there ? 0.5f : 0));
     });
+}
+
+namespace {
+
+// Of each material hardening times volume at molding, as its mean.
+std::vector<double> means(const Aggregate& m) {
+    std::vector<double> sum(m.material_count(), 0.0), volume = material_volumes(m);
+    for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+        const auto cell = static_cast<CellId>(c);
+        const double whole = m.lattice.cell_volume() * m.cell_fill[c];
+        if (const MixedCell* mixed = m.mixed_at(cell)) {
+            const double both = double(mixed->fill[0]) + mixed->fill[1];
+            for (int k : {0, 1}) {
+                sum[mixed->material[k]] += whole * mixed->fill[k] / both * mixed->flowed[k].back();
+            }
+        } else {
+            sum[m.material_number(cell)] += whole * m.cell_history.hardening_of(cell);
+        }
+    }
+    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] /= volume[n];
+    return sum;
+}
+
+Aggregate ball(double spacing, const Mat3& turn = Mat3::Identity()) {
+    Material metal;
+    metal.yield_stress = 1e3;
+    MoldSettings settings;
+    settings.spacing = spacing;
+    TriMesh mesh = sphere_mesh(0.5, 3);
+    for (Vec3& x : mesh.position) x = turn * x;
+    return mold(mesh, metal, settings);
+}
+
+}  // namespace
+
+TEST_CASE("flow that a few partly filled cells hold is as much once they are molded anew") {
+    // In cells of the same size, of other sizes, and askew to them.
+    const double spacing = GENERATE(0.14, 0.13, 0.11, 0.17);
+    const Mat3 turn = Eigen::AngleAxisd(GENERATE(0.0, 0.6), Vec3(1, 2, 3).normalized()).matrix();
+    Aggregate old = ball(0.14);
+    old.cell_history.assign(old.cell_fill.size());
+    for (std::size_t c = 0; c < old.cell_fill.size(); ++c) {
+        const bool flows = old.cell_fill[c] < 0.35f && middle_x(old, c) > 0.3;
+        old.cell_history.hardening()[c] = flows ? 0.2f + float(c % 7) : 0;
+    }
+    deform(old, [&](const Vec3& x) { return Vec3(turn * x); });
+    Aggregate anew = ball(spacing, turn);
+    carry_hardening(old, anew);
+    CHECK(means(anew)[0] == Approx(means(old)[0]).epsilon(1e-6));
+    // It is where it was.
+    for (std::size_t c = 0; c < anew.cell_fill.size(); ++c) {
+        const Vec3 at = turn.transpose() * cell_middle(anew, static_cast<CellId>(c));
+        if (at.x() < 0) CHECK(anew.cell_history.hardening()[c] == 0);
+    }
+}
+
+TEST_CASE("what has flowed evenly has done so once it is molded anew, in more room or less") {
+    Aggregate old = ball(0.14);
+    old.cell_history.assign(old.cell_fill.size());
+    for (float& one : old.cell_history.hardening()) one = 0.37f;
+    const Mat3 turn = Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized()).matrix();
+    deform(old, [&](const Vec3& x) { return Vec3(turn * (0.97 * x)); });
+    Aggregate anew = ball(0.11);
+    carry_hardening(old, anew);
+    for (float one : anew.cell_history.hardening()) CHECK(one == Approx(0.37f).epsilon(1e-6));
+}
+
+TEST_CASE("each material has as much flow, molded anew, as it had itself") {
+    Aggregate old = bar_of_two({0.4, 0.1, 0.1}, 0.43, 5);
+    old.cell_history.assign(old.cell_fill.size());
+    int number = 0;
+    for_each_part(old, [&](int material, const Vec3& at, float& hardening) {
+        hardening = ++number % 5 == 0 && std::abs(at.x()) < 0.1 ? (material == 0 ? 1 : 10) : 0;
+    });
+    for (MixedCell& mixed : old.mixed_cell) mixed.flowed[0].back() += 2;
+    Aggregate anew = bar_of_two({0.4, 0.1, 0.1}, 0.43, GENERATE(4, 6));
+    REQUIRE(!anew.mixed_cell.empty());
+    carry_hardening(old, anew);
+    for (int m : {0, 1}) CHECK(means(anew)[m] == Approx(means(old)[m]).epsilon(1e-6));
+}
+
+TEST_CASE("a new cell across two old ones has what these have of it, back stress too") {
+    const Material metal{.mechanics = Mechanics::cells,
+                         .young_modulus = 1e6,
+                         .yield_stress = 1e3,
+                         .back_stress = 600,
+                         .back_strain = 0.01};
+    Aggregate old = make_block(6, 2, 2, 0.1, metal);
+    old.cell_history.assign(old.cell_fill.size());
+    old.cell_back.assign(old.cell_fill.size());
+    const auto strain = [](std::size_t c) { return c % 6 == 2 ? 4e-4f : 0; };
+    for (std::size_t c = 0; c < old.cell_fill.size(); ++c) {
+        old.cell_history.hardening()[c] = c % 6 == 2 ? 0.01f : 0;
+        old.cell_back.row[0][c] = strain(c);
+        old.cell_back.row[1][c] = -strain(c);
+    }
+    Aggregate anew = make_block(6, 2, 2, 0.1, metal);
+    deform(old, [](const Vec3& x) { return Vec3(x + Vec3(0.025, 0, 0)); });
+    carry_hardening(old, anew);
+    for (std::size_t c = 0; c < anew.cell_fill.size(); ++c) {
+        const double share = c % 6 == 2 ? 0.75 : c % 6 == 3 ? 0.25 : 0;
+        CHECK(anew.cell_history.hardening()[c] == Approx(0.01 * share).epsilon(1e-5));
+        CHECK(anew.cell_back.row[0][c] == Approx(4e-4 * share).epsilon(1e-5));
+        CHECK(anew.cell_back.row[1][c] == Approx(-4e-4 * share).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("of a torn cell each side's flow goes with that side") {
+    const Material metal{.yield_stress = 1e3};
+    Aggregate old = make_block(5, 2, 2, 0.1, metal);
+    old.cell_history.assign(old.cell_fill.size());
+    for (std::size_t c = 0; c < old.cell_fill.size(); ++c) {
+        if (c % 5 == 2) old.cell_history.hardening()[c] = 1;  // which the cut goes through
+    }
+    sever_plane(old, Vec3(0.01, 0, 0), Vec3::UnitX());
+    for (std::size_t p = 0; p < old.particle_count(); ++p) {
+        if (old.particle_reference.at(p).x() > 0) old.particle_position.add(p, Vec3(0.5, 0, 0));
+    }
+    // Cells 0.1 wide of both halves, and none between them.
+    std::vector<Vec3i> cells;
+    for (int k : {0, 1}) {
+        for (int j : {0, 1}) {
+            for (int i : {0, 1, 2, 7, 8, 9}) cells.emplace_back(i, j, k);
+        }
+    }
+    Aggregate anew = make_matter({-0.25, -0.1, -0.1}, 0.1, {10, 2, 2}, cells,
+                                 std::vector<float>(cells.size(), 1), metal);
+    carry_hardening(old, anew);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const bool torn = cells[c].x() == 2 || cells[c].x() == 7;
+        CHECK(anew.cell_history.hardening()[c] == Approx(torn ? 0.6f : 0).epsilon(1e-5));
+    }
 }

@@ -229,3 +229,42 @@ TEST_CASE("an inset that a bent path has cut is not molded anew, and one beside 
         "be cut along it");
     CHECK_NOTHROW(anew_of(box_inset({0.8, 0.2, 0.2}, {1, 0.8, 0.8})));
 }
+
+TEST_CASE("each material's flow, by its mass, stays as much in what was bent and is molded anew") {
+    const auto flow = [](Aggregate& m, const auto& see) {
+        const double cell = m.lattice.cell_volume();
+        for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+            const auto id = static_cast<CellId>(c);
+            if (m.mixed_at(id) != nullptr) continue;
+            see(m.material_number(id), cell * m.cell_fill[c], m.cell_history.hardening()[c]);
+        }
+        for (MixedCell& mixed : m.mixed_cell) {
+            const double whole =
+                cell * m.cell_fill[mixed.cell] / (double(mixed.fill[0]) + mixed.fill[1]);
+            for (int k : {0, 1}) {
+                see(mixed.material[k], whole * mixed.fill[k], mixed.flowed[k].back());
+            }
+        }
+    };
+    const auto sums = [&](Aggregate& m) {
+        std::vector<double> sum(2, 0.0);
+        flow(m, [&](std::size_t material, double volume, float& hardening) {
+            sum[material] += m.material_at(material).density * volume * hardening;
+        });
+        return sum;
+    };
+    const BodySpec body = body_of({lump()}, 6);
+    WorkPiece piece = make(body);
+    piece.matter.cell_history.assign(piece.matter.cell_fill.size());
+    int number = 0;
+    flow(piece.matter, [&](std::size_t material, double, float& hardening) {
+        if (++number % 11 == 0) hardening = material == 0 ? 0.3f : 1.7f;
+    });
+    bend_round(piece);
+    const std::vector<double> had = sums(piece.matter);
+    for (int n = 0; n < 2; ++n) {
+        piece = mold_anew(piece, body, {}, true);
+        const std::vector<double> has = sums(piece.matter);
+        for (int m : {0, 1}) CHECK(has[m] == Approx(had[m]).epsilon(1e-6));
+    }
+}
