@@ -156,10 +156,11 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     const int pieces = find_pieces(matter).count;
     const std::optional<int> wanted = euler_inside(mesh);
     if (pieces < bodies) {
-        findings.push_back(
-            fmt::format("{} separate bodies became {}: they share cells of {} or are too "
-                        "small for these; a smaller spacing keeps them apart",
-                        bodies, pieces, length_text(frame.spacing)));
+        findings.push_back(fmt::format(
+            "{} separate bodies became {}: they share the corners of cells of {}, as "
+            "those less than two cells ({}) apart may, or are too small for these; a "
+            "smaller spacing keeps them apart",
+            bodies, pieces, length_text(frame.spacing), length_text(2 * frame.spacing)));
     } else if (wanted && surplus * cell <= 1e-6 * volume && euler_of(matter) != *wanted) {
         findings.push_back(fmt::format(
             "with cells of {} the matter has other holes or handles than the mesh: parts "

@@ -288,3 +288,29 @@ TEST_CASE("what matter has not as its mesh has it is told to the one who asks") 
     REQUIRE(told.size() == 1);
     CHECK(told[0].find("2 separate bodies became 1") == 0);
 }
+
+TEST_CASE("bodies become one where they stand less than two cells apart, which is told") {
+    const double h = 0.1;
+    MoldSettings settings;
+    settings.spacing = h;
+    int joined = 0;
+    for (double gap : {1.6, 2.001}) {
+        for (double length : {3.1, 3.3, 3.5, 3.7, 3.9}) {
+            const TriMesh mesh =
+                together(box_mesh(Vec3::Zero(), h * Vec3(4.3, 2, 2)),
+                         box_mesh(h * Vec3(4.3 + gap, 0, 0), h * Vec3(4.3 + gap + length, 2, 2)));
+            std::vector<std::string> told;
+            const Aggregate matter = mold(mesh, Material{}, settings, {}, &told);
+            const bool is_one = find_pieces(matter).count == 1;
+            CHECK((gap < 2 || !is_one));
+            CHECK(told.size() == (is_one ? 1 : 0));
+            joined += is_one;
+            if (!is_one) continue;
+            CHECK(told[0] ==
+                  "2 separate bodies became 1: they share the corners of cells of 10 cm, as those "
+                  "less than two cells (20 cm) apart may, or are too small for these; a smaller "
+                  "spacing keeps them apart");
+        }
+    }
+    CHECK(joined > 0);
+}
