@@ -67,6 +67,9 @@ std::vector<std::string> copy_textures(const fs::path& file,
                      m.texture.string());
             bytes = std::move(*image);
             wanted = plain_name(m.texture.filename().string(), "texture");
+            // Readers go by it.
+            const std::optional<PictureKind> kind = picture_kind(bytes);
+            if (kind && fs::path(wanted).extension().empty()) wanted += kind->ending;
         } else {
             names.emplace_back();
             continue;

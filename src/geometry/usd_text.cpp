@@ -30,8 +30,17 @@ std::string usd_string(std::string_view text) {
 }
 
 std::string usd_asset(std::string_view path) {
-    const char* quote = path.find('@') == std::string_view::npos ? "@" : "@@@";
-    return fmt::format("{}{}{}", quote, path, quote);
+    if (path.find('@') == std::string_view::npos) return fmt::format("@{}@", path);
+    constexpr std::string_view kQuote = "@@@";
+    std::string quoted(kQuote);
+    while (!path.empty()) {
+        const bool is_quote = path.starts_with(kQuote);
+        const std::string_view next = path.substr(0, is_quote ? kQuote.size() : 1);
+        if (is_quote) quoted.push_back('\\');
+        quoted.append(next);
+        path.remove_prefix(next.size());
+    }
+    return quoted.append(kQuote);
 }
 
 std::string usd_prim(std::string_view kind, const std::string& name, const std::string& identifier,

@@ -282,6 +282,17 @@ TEST_CASE("a PLY shows the colour of faces that take none of the mesh, inside of
     }
 }
 
+TEST_CASE("a texture without an ending gets that of its kind") {
+    TriMesh box = test::box_mesh({0, 0, 0}, {1, 2, 3});
+    const Folder folder;
+    box.material.push_back({.name = "m"});
+    box.material[0].texture = folder.write("hide", "\x89PNG\r\n\x1a\n");
+    box.triangle_material.assign(box.triangle.size(), 0);
+    std::filesystem::create_directories(folder / "out");
+    write_obj(folder / "out/b.obj", box);
+    CHECK(test::bytes_of(folder / "out/hide.png") == "\x89PNG\r\n\x1a\n");
+}
+
 TEST_CASE("vertex colours survive an OBJ") {
     const Folder folder;
     TriMesh box = test::box_mesh({0, 0, 0}, {1, 2, 3});
