@@ -29,7 +29,8 @@ struct VertexValues {
 };
 
 // Binary little-endian PLY, places in double precision: polygons, normals where the whole surface
-// is smooth (PLY has one a vertex), colours (8 bit sRGB; where only faces meet that take none it is
+// is smooth (PLY has one a vertex), colours where vertices have them (8 bit sRGB; materials' are in
+// them, over the 0.8 that read_mesh() gives back; where only faces meet that take none it is
 // theirs), texture coordinates at vertices (s, t) when no seam forbids it, else at face corners
 // (texcoord, an empty list where a face has none; in double precision beside polygons of more than
 // three), names of textures and, where not all faces have the one there is, texnumber (-1: none).

@@ -12,6 +12,7 @@
 #include "geometry/files_beside.h"
 #include "geometry/mesh_write.h"
 #include "geometry/polygon.h"
+#include "geometry/shown_color.h"
 
 namespace swage {
 
@@ -108,22 +109,23 @@ class PlyFile {
         images_differ_ = image_.size() > 1 || (image_.size() == 1 && some_have_none);
     }
 
-    // Where only faces meet that take no colours of the mesh, as inside of a cut face, it is
-    // theirs.
+    // Each as it is drawn, but for what readers, swage among them, make of it: they have no
+    // material but that of an image, which is white, and the default one. Where several meet, it is
+    // that of the first which takes colours; where none does, as inside of a cut face, their own.
     void color_vertices() {
+        const Eigen::Array3f plain = SurfaceMaterial().color.cast<float>();
+        enum : char { none, own, taken };
+        std::vector<char> from(mesh_.position.size(), none);
         color_ = mesh_.position_color;
-        if (mesh_.triangle_material.empty()) return;
-        std::vector<char> takes(color_.size(), 0);
-        const auto look = [&](std::size_t t) -> const SurfaceMaterial& {
-            return mesh_.material[mesh_.triangle_material[t]];
-        };
-        for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
-            for (const int v : mesh_.triangle[t]) takes[v] |= look(t).takes_colors;
-        }
-        for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
-            for (const int v : mesh_.triangle[t]) {
-                if (!takes[v]) color_[v] = look(t).color.cast<float>();
-            }
+        for (std::size_t i = 0, p = 0; i < polygons_.corner.size(); ++i) {
+            if (i == polygons_.first[p + 1]) ++p;
+            const std::size_t t = std::size_t(polygons_.corner[i] / 3);
+            const int v = mesh_.triangle[t][polygons_.corner[i] % 3];
+            const char here = material_of(mesh_, t).takes_colors ? taken : own;
+            if (from[v] >= here) continue;
+            from[v] = here;
+            color_[v] = shown_color(mesh_, t, v);
+            if (face_image_[p] < 0) color_[v].array() /= plain;
         }
     }
 

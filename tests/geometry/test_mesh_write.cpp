@@ -282,6 +282,30 @@ TEST_CASE("a PLY shows the colour of faces that take none of the mesh, inside of
     }
 }
 
+TEST_CASE("vertex colours of a PLY look as their materials make them, read again") {
+    TriMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    mesh.position_color.assign(8, {0.8F, 0.8F, 0.4F});
+    mesh.material = {{.name = "paint", .color = {0.1, 0.8, 0.1}}};
+    mesh.triangle_material.assign(mesh.triangle.size(), 0);
+    const Folder folder;
+    const bool has_image = GENERATE(false, true);
+    if (has_image) {
+        mesh.material[0].texture = folder.write("image.png", "image");
+        mesh.uv = {{0.5, 0.5}};
+        mesh.triangle_uv.assign(mesh.triangle.size(), {0, 0, 0});
+    }
+    std::filesystem::create_directories(folder / "out");
+    write_ply(folder / "out/a.ply", mesh);
+    const TriMesh read = read_quietly(folder / "out/a.ply");
+    REQUIRE(read.position_color.size() == 8);
+    REQUIRE(read.material.size() == (has_image ? 1 : 0));
+    const Vec3 factor = has_image ? read.material[0].color : SurfaceMaterial().color;
+    for (const Eigen::Vector3f& color : read.position_color) {
+        const Vec3 seen = factor.cwiseProduct(color.cast<double>());
+        CHECK((seen - Vec3(0.08, 0.64, 0.04)).cwiseAbs().maxCoeff() < 3e-3);  // 8 bit
+    }
+}
+
 TEST_CASE("a texture without an ending gets that of its kind") {
     TriMesh box = test::box_mesh({0, 0, 0}, {1, 2, 3});
     const Folder folder;
