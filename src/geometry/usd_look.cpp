@@ -3,21 +3,46 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+
+#include "geometry/shown_color.h"
 
 namespace swage {
 
 namespace {
 
+constexpr double kAlike = 1e-5;  // colours; those of vertices that cuts make are rounded
+
+std::string name_of(const SurfaceMaterial& material) {
+    return material.name.empty() ? "material" : material.name;
+}
+
 bool has_image(const SurfaceMaterial& material) {
     return !material.texture.empty() || material.embedded_texture != nullptr;
 }
 
+bool is_alike(const Vec3& a, const Vec3& b) { return (a - b).cwiseAbs().maxCoeff() < kAlike; }
+
 bool is_same(const SurfaceMaterial& a, const SurfaceMaterial& b) {
     const auto& image_a = a.embedded_texture;
     const auto& image_b = b.embedded_texture;
-    return a.name == b.name && a.color == b.color && a.roughness == b.roughness &&
+    return a.name == b.name && is_alike(a.color, b.color) && a.roughness == b.roughness &&
            a.metallic == b.metallic && a.clear == b.clear && a.texture == b.texture &&
            (image_a == image_b || (image_a && image_b && *image_a == *image_b));
+}
+
+// Of all that a material covers; none where it differs.
+std::optional<Vec3> only_color(const TriMesh& mesh, const SurfaceMaterial& material) {
+    std::optional<Vec3> only;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        if (&material_of(mesh, t) != &material) continue;
+        for (const int v : mesh.triangle[t]) {
+            const Vec3 here = shown_color(mesh, t, v).cast<double>();
+            if (!only) only = here;
+            if (!is_alike(*only, here)) return std::nullopt;
+        }
+    }
+    return only;
 }
 
 std::string color_text(const Vec3& color) {
@@ -38,8 +63,8 @@ int UsdLooks::number_of(SurfaceMaterial material, bool reads_colors) {
         return look.reads_colors == reads_colors && is_same(look.material, material);
     });
     if (known != look_.end()) return static_cast<int>(known - look_.begin());
-    const std::string name = material.name.empty() ? "material" : material.name;
-    look_.push_back({std::move(material), reads_colors, usd_identifier(name, taken_)});
+    const std::string identifier = usd_identifier(name_of(material), taken_);
+    look_.push_back({std::move(material), reads_colors, identifier});
     return static_cast<int>(look_.size()) - 1;
 }
 
@@ -59,10 +84,17 @@ std::vector<int> UsdLooks::of_polygons(const TriMesh& mesh, const PolygonCorners
         if (is_new) {
             SurfaceMaterial material = mesh.material[m];
             if (is_bare) material.texture.clear(), material.embedded_texture.reset();
-            // NOTE: UsdPreviewSurface multiplies no colours; an image goes before those of
-            // vertices.
-            const bool reads_colors =
-                material.takes_colors && !has_image(material) && !mesh.position_color.empty();
+            const bool takes_colors = material.takes_colors && !mesh.position_color.empty();
+            const bool reads_colors = takes_colors && !has_image(material);
+            if (takes_colors && !reads_colors) {
+                // NOTE: UsdPreviewSurface multiplies no colours; an image goes before those of
+                // vertices.
+                if (const auto only = only_color(mesh, mesh.material[m])) {
+                    material.color = *only;
+                } else {
+                    without_colors_.insert(name_of(material));
+                }
+            }
             at->second = number_of(std::move(material), reads_colors);
         }
         look[p] = at->second;
@@ -84,7 +116,7 @@ void UsdLooks::write(UsdText& out, const std::string& path,
         const auto connection = [&](const char* shader, const char* output) {
             return fmt::format(".connect = <{}/{}.outputs:{}>", own, shader, output);
         };
-        out.open(fmt::format("def Material \"{}\"", look.identifier));
+        out.open(usd_prim("Material", name_of(look.material), look.identifier));
         out.line("token outputs:surface" + connection("surface", "surface"));
         std::string diffuse = fmt::format(" = ({})", color_text(look.material.color));
         if (!image[n].empty()) diffuse = connection("image", "rgb");

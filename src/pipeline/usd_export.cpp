@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "geometry/edges.h"
 #include "geometry/files_beside.h"
+#include "geometry/shown_color.h"
 #include "geometry/usd_look.h"
 #include "geometry/usd_mesh.h"
 #include "geometry/usd_text.h"
@@ -38,6 +39,7 @@ constexpr std::string_view kBegin = "#usda 1.0\n(\n    doc = \"A run of swage";
 // Bytes of what is written as text, about.
 constexpr double kPlaceBytes = 38, kNormalBytes = 30, kCornerBytes = 13, kFaceBytes = 3;
 constexpr double kCornerBytesInImage = 20, kColorBytes = 32, kFieldBytes = 13;
+constexpr double kCornerBytesOfColor = 6;
 
 struct Skin {
     int id = -1;
@@ -53,10 +55,16 @@ struct Track {
     std::vector<std::array<Float3, 2>> extent;
     std::vector<std::vector<std::uint64_t>> field;  // hashes of each one's values and the skin
     std::vector<std::size_t> vertices, smooth_groups;
-    double skin_bytes = 0;  // of all that is written once a skin
-    std::vector<int> look;  // all that its polygons have
+    double skin_bytes = 0;           // of all that is written once a skin
+    std::vector<int> look;           // all that its polygons have
+    std::vector<std::size_t> faces;  // of each of these
     bool all_have_looks = true, is_open = false, has_normals = true, has_uv = false,
-         has_colors = false;
+         has_colors = false, has_corner_colors = false;
+
+    int main_look() const {  // of the most faces, -1: none
+        const auto most = std::max_element(faces.begin(), faces.end());
+        return most == faces.end() ? -1 : look[std::size_t(most - faces.begin())];
+    }
 };
 
 class Exporter {
@@ -75,6 +83,9 @@ class Exporter {
         int samples = 0;
         for (const Track& track : track_) {
             samples += static_cast<int>(moves(track).size()) * (track.has_normals ? 2 : 1);
+        }
+        for (const std::string& name : looks_.without_colors()) {
+            log_warning("material '{}': in USD its image is without the vertex colours", name);
         }
         progress_.emplace("export", samples);
         const double expected = expected_bytes(), room = free_disk(fs::absolute(file));
@@ -174,21 +185,28 @@ class Exporter {
     void look_at_skin(Track& track, const Skin& skin) {
         for (const int look : looks_.of_polygons(skin.mesh, skin.polygons)) {
             if (look < 0) track.all_have_looks = false;
-            if (look >= 0 &&
-                std::find(track.look.begin(), track.look.end(), look) == track.look.end()) {
+            if (look < 0) continue;
+            const auto known = std::find(track.look.begin(), track.look.end(), look);
+            const auto at = std::size_t(known - track.look.begin());
+            if (known == track.look.end()) {
                 track.look.push_back(look);
+                track.faces.push_back(0);
             }
+            ++track.faces[at];
         }
         track.smooth_groups.back() = std::size_t(skin.mesh.smooth_group_count);
         const double corners = double(skin.polygons.corner.size());
         track.skin_bytes += kFaceBytes * double(skin.polygons.count()) + kCornerBytes * corners;
         if (!skin.mesh.triangle_uv.empty()) track.skin_bytes += kCornerBytesInImage * corners;
-        if (!skin.mesh.position_color.empty()) {
-            track.skin_bytes += kColorBytes * double(skin.mesh.position.size());
-        }
         track.is_open = track.is_open || !is_closed(skin.mesh);
         track.has_uv = track.has_uv || !skin.mesh.triangle_uv.empty();
-        track.has_colors = track.has_colors || !skin.mesh.position_color.empty();
+        if (!skin.mesh.position_color.empty()) {
+            track.has_colors = true;
+            const bool at_corners = !colors_of_positions(skin.mesh);
+            track.has_corner_colors = track.has_corner_colors || at_corners;
+            track.skin_bytes += kColorBytes * double(skin.mesh.position.size());
+            if (at_corners) track.skin_bytes += kCornerBytesOfColor * corners;
+        }
         track.has_normals =
             track.has_normals && skin.mesh.triangle_smooth.size() == skin.mesh.triangle.size();
     }
@@ -261,7 +279,7 @@ class Exporter {
             const std::vector<Vec3> place = places(body, frame);
             out.list(place.size(), [&](std::size_t i) { out.vector<3>(place[i].cast<float>()); });
         });
-        if (track.has_colors) write_colors(out, body);
+        write_colors(out, body);
         if (track.has_normals) write_normals(out, body, moves);
         if (track.has_uv) write_uv(out, body);
         write_fields(out, body);
@@ -308,15 +326,35 @@ class Exporter {
         });
     }
 
-    // USD's are linear, as those of meshes here are.
+    // USD's are linear, as those of meshes here are. Without those of vertices one stands for all.
     void write_colors(UsdText& out, std::size_t body) {
-        out.value("color3f[] primvars:displayColor", "vertex", new_skins(body, Between::straight),
+        const Track& track = track_[body];
+        const std::string name = "color3f[] primvars:displayColor";
+        const auto put = [&](const std::vector<Float3>& color) {
+            out.list(color.size(), [&](std::size_t i) { out.vector(color[i]); });
+        };
+        if (!track.has_colors) {
+            const int look = track.main_look();
+            const SurfaceMaterial main = look < 0 ? SurfaceMaterial() : looks_.material(look);
+            out.value(name, "constant", {frames_.first},
+                      [&](int) { put({main.color.cast<float>()}); });
+            return;
+        }
+        const std::vector<int> times = new_skins(body, Between::straight);
+        if (!track.has_corner_colors) {
+            out.value(name, "vertex", times,
+                      [&](int frame) { put(*colors_of_positions(skin(body, frame).mesh)); });
+            return;
+        }
+        const auto colors = [&](int frame) {
+            const Skin& now = skin(body, frame);
+            return corner_colors(now.mesh, now.polygons);
+        };
+        out.value(name, kUsdOfCorners, times, [&](int frame) { put(colors(frame).value); });
+        out.value("int[] primvars:displayColor:indices", "", new_skins(body, Between::held),
                   [&](int frame) {
-                      const TriMesh& mesh = skin(body, frame).mesh;
-                      out.list(mesh.position.size(), [&](std::size_t i) {
-                          out.vector<3>(mesh.position_color.empty() ? Float3(Float3::Ones())
-                                                                    : mesh.position_color[i]);
-                      });
+                      const std::vector<int> index = colors(frame).index;
+                      out.list(index.size(), [&](std::size_t i) { out.number(index[i]); });
                   });
     }
 
@@ -378,11 +416,10 @@ class Exporter {
             out.line(
                 fmt::format("rel material:binding = <{}/{}>", materials, looks_.identifier(look)));
         };
-        if (track.look.size() == 1 && track.all_have_looks) {
-            bind(track.look[0]);
-            return;
-        }
         if (track.look.empty()) return;
+        // Also beside parts, which not all readers know.
+        if (track.all_have_looks) bind(track.main_look());
+        if (track.look.size() == 1 && track.all_have_looks) return;
         out.line(fmt::format("uniform token subsetFamily:materialBind:familyType = \"{}\"",
                              track.all_have_looks ? "partition" : "nonOverlapping"));
         for (const int look : track.look) {

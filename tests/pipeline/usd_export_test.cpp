@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "geometry/usd_look.h"
 #include "tests/catch.h"
 #include "tests/shared/bytes_of.h"
 #include "tests/shared/meshes.h"
@@ -63,6 +64,24 @@ TriMesh colored() {
 std::vector<Vec3> moved(std::vector<Vec3> position, const Vec3& way) {
     for (Vec3& p : position) p += way;
     return position;
+}
+
+// Written as one body that does not move, or has one skin after the other.
+std::string exported(const fs::path& folder, const std::vector<TriMesh>& skins) {
+    {
+        FrameStoreWriter writer(folder / "motion.bin");
+        for (const TriMesh& skin : skins) writer.add_skin(skin);
+        for (std::size_t n = 0; n < skins.size(); ++n) {
+            StoredFrame now;
+            now.body = {{static_cast<int>(n), skins[n].position}};
+            writer.add_frame(now);
+        }
+        writer.finish();
+    }
+    const fs::path file = folder / "out" / "x.usda";
+    export_usd(FrameStore(folder / "motion.bin"), {"run", {"one"}},
+               {1, static_cast<int>(skins.size())}, file);
+    return bytes_of(file);
 }
 
 // One falls and is cut, one stays but in frame 6, one stays.
@@ -218,9 +237,8 @@ TEST_CASE("corners have their place in the image and their normal, those without
               std::vector<float>{0, 0, -1});
     }
     CHECK(usd.numbers("/two_falls/_3rd.primvars:displayColor", 1) ==
-          std::vector<float>{0.25f, 0.5f, 1, 0.25f, 0.5f, 1, 0.25f, 0.5f, 1, 0.25f, 0.5f, 1, 0.25f,
-                             0.5f, 1});
-    CHECK_FALSE(usd.has(kBody + ".primvars:displayColor"));
+          std::vector<float>{0.2f, 0.4f, 0.8f, 0.2f, 0.4f, 0.8f, 0.2f, 0.4f, 0.8f, 0.2f, 0.4f, 0.8f,
+                             0.2f, 0.4f, 0.8f});  // times that of what has no material
 }
 
 TEST_CASE("what does not change is written once, and what stays has a sample before it goes on") {
@@ -254,6 +272,12 @@ TEST_CASE("every face has the material of the skin, a textured one its image bes
     // What lets light through is open by that; all else says nothing of it.
     CHECK(usd.text(looks + "cut/surface.inputs:opacity") == "0.25");
     CHECK_FALSE(usd.has(looks + "hide/surface.inputs:opacity"));
+    // What reads no parts of a mesh has the look of most of it.
+    CHECK(usd.text(kBody + ".material:binding") == "<" + looks + "hide>");
+    CHECK(bytes_of(motion.file())
+              .find("(0.8, 0.8, 0.8)] (\n            interpolation = "
+                    "\"constant\"") != std::string::npos);
+    CHECK(usd.numbers(kBody + ".primvars:displayColor", 1) == std::vector<float>{0.8f, 0.8f, 0.8f});
     // A face that has no place in the image has the colour alone.
     CHECK(usd.has(looks + "hide_2/surface.inputs:diffuseColor"));
     CHECK(usd.text(kBody + "/hide.material:binding") == "<" + looks + "hide>");
@@ -303,4 +327,74 @@ TEST_CASE("an export gives way to another, nothing else does, and one that fails
     const std::string mine = bytes_of(motion.file());
     CHECK(refused({1, kFrames}, ExitCode::foreign));
     CHECK(bytes_of(motion.file()) == mine);
+}
+
+TEST_CASE("colours of vertices are those of their material times theirs in USD") {
+    const Scratch scratch;
+    TriMesh mesh = colored();
+    mesh.material = {{.name = "coat", .color = {0.2, 0.2, 0.5}}};
+    mesh.triangle_material.assign(mesh.triangle.size(), 0);
+    const std::string text = exported(scratch.path(), {mesh});
+    const Usda usd(text);
+    std::vector<float> expected;
+    for (int v = 0; v < 5; ++v) expected.insert(expected.end(), {0.05f, 0.1f, 0.5f});
+    CHECK(usd.numbers("/run/one.primvars:displayColor", 1) == expected);
+    CHECK(text.find("interpolation = \"vertex\"") != std::string::npos);
+    CHECK_FALSE(usd.has("/run/one.primvars:displayColor:indices"));
+    CHECK(usd.text("/run/materials/coat/surface.inputs:diffuseColor.connect") ==
+          "</run/materials/coat/colors.outputs:result>");
+}
+
+TEST_CASE("faces that take no colours of vertices have their own in USD, also at their rim") {
+    const Scratch scratch;
+    TriMesh mesh = pyramid({}), cut = cut_pyramid({});
+    for (TriMesh* one : {&mesh, &cut}) one->position_color.assign(5, {0.25f, 0.5f, 1});
+    cut.position_color[0] = {1, 0, 0};
+    const std::string text = exported(scratch.path(), {mesh, cut});
+    const Usda usd(text);
+    for (const int f : {1, 2}) {
+        const auto value = usd.numbers("/run/one.primvars:displayColor", f);
+        const auto index = usd.numbers("/run/one.primvars:displayColor:indices", f);
+        const auto corner = usd.numbers("/run/one.faceVertexIndices", f);
+        REQUIRE(index.size() == corner.size());
+        CHECK(value.size() == (f == 1 ? 3 : 9));  // each once
+        for (std::size_t i = 0; i < corner.size(); ++i) {
+            INFO(f << " " << i);
+            std::vector<float> expected = {0.2f, 0.4f, 0.8f};
+            if (f == 2 && corner[i] == 0) expected = {0.8f, 0, 0};
+            if (f == 2 && i >= 10) expected = {0.5f, 0.25f, 1};
+            const auto at = value.begin() + 3 * long(index[i]);
+            CHECK(std::vector<float>(at, at + 3) == expected);
+        }
+    }
+    CHECK(usd.times("/run/one.primvars:displayColor:indices") == std::vector<int>{1, 2});
+    CHECK(text.find("primvars:displayColor (interpolation = \"faceVarying\")") !=
+          std::string::npos);
+}
+
+TEST_CASE("an image is as much darker in USD as the colour that all its vertices have") {
+    const Scratch scratch;
+    const fs::path texture = scratch.path() / "spots.png";
+    std::ofstream(texture) << "\x89PNG of spots";
+    TriMesh mesh = pyramid(texture);
+    mesh.position_color.assign(5, {0.25f, 0.5f, 1});
+    const bool is_uniform = GENERATE(true, false);
+    if (!is_uniform) mesh.position_color[1] = {1, 1, 1};
+    UsdLooks looks;
+    looks.of_polygons(mesh, rejoin_polygons(mesh));
+    CHECK(looks.without_colors() ==
+          (is_uniform ? std::set<std::string>{} : std::set<std::string>{"hide"}));
+    const Usda usd(exported(scratch.path(), {mesh}));
+    CHECK(usd.numbers("/run/materials/hide/image.inputs:scale", 1) ==
+          (is_uniform ? std::vector<float>{0.2f, 0.4f, 0.8f, 1}
+                      : std::vector<float>{0.8f, 0.8f, 0.8f, 1}));
+}
+
+TEST_CASE("a material keeps its name in USD where that is no identifier") {
+    const Scratch scratch;
+    TriMesh mesh = pyramid({});
+    mesh.material[0].name = "raw hide";
+    const Usda usd(exported(scratch.path(), {mesh}));
+    REQUIRE(usd.kind("/run/materials/raw_hide") == "Material");
+    CHECK(usd.text("/run/materials.name") == "\"raw hide\"");
 }
