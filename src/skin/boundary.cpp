@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "geometry/polygon.h"
+#include "geometry/edge_attributes.h"
+#include "skin/voxel_crossings.h"
 #include "skin/voxel_place.h"
 #include "skin/voxel_surface.h"
 
@@ -132,36 +133,15 @@ void bind_vertex(const Aggregate& matter, const Pieces& pieces, const Vec3& plac
     side = corner_groups(matter, home)[owner.corner];
 }
 
-// A blade may cut off particles whose cells hold next to no material on that side. Such crumbs are
-// not drawn: takes the faces out of all pieces that enclose less than a share of a cell.
-void drop_crumbs(const Aggregate& matter, const Pieces& pieces, const std::vector<Vec3>& place,
-                 VoxelSurface& surface) {
-    constexpr double kCrumb = 0.02;  // cells
-    if (pieces.count == 1) return;
-    const auto piece_of = [&](const VoxelFace& face) {
-        return pieces.particle_piece[matter.lattice.cell_corners(face.cell)[face.corner]];
-    };
-    std::vector<double> volume(pieces.count, 0.0);
-    std::vector<Vec3> origin(pieces.count, Vec3::Zero());
-    std::vector<char> seen(pieces.count, 0);
-    for (const VoxelFace& face : surface.face) {
-        const int piece = piece_of(face);
-        if (!seen[piece]) seen[piece] = 1, origin[piece] = place[face.point[0]];
-        std::array<Vec3, 4> p;
-        for (int k = 0; k < 4; ++k) p[k] = place[face.point[k]] - origin[piece];
-        volume[piece] += (p[0].dot(p[1].cross(p[2])) + p[0].dot(p[2].cross(p[3]))) / 6;
-    }
-    const double least = kCrumb * matter.lattice.cell_volume();
-    std::erase_if(surface.face,
-                  [&](const VoxelFace& face) { return volume[piece_of(face)] < least; });
-    std::vector<int> number(surface.vertex_count, -1);
-    surface.vertex_count = 0;
-    for (VoxelFace& face : surface.face) {
-        for (int& v : face.vertex) {
-            if (number[v] < 0) number[v] = surface.vertex_count++;
-            v = number[v];
-        }
-    }
+// A little way into a voxel.
+void into_voxel(const Aggregate& matter, const Owner& owner, Vec3& place) {
+    constexpr double kApart = 0.02;  // spacings
+    const CellBox box = cell_box(matter, owner.cell);
+    const Vec3 half = corner_step(owner.corner).cast<double>();
+    const Vec3 middle = Vec3::Constant(0.25) + 0.5 * half;  // of the voxel, in the cell
+    const Vec3 way = box.low + middle.cwiseProduct(box.size) - place;
+    const double far = way.norm();
+    if (far > 0) place += kApart * matter.lattice.spacing / far * way;
 }
 
 // Where cells touch at an edge or a corner only, their surfaces have vertices of their own at one
@@ -169,7 +149,6 @@ void drop_crumbs(const Aggregate& matter, const Pieces& pieces, const std::vecto
 // place. Not along a cut, which is closed until it opens.
 void part_touching(const Aggregate& matter, const VoxelSurface& surface,
                    const std::vector<Owner>& owner, std::vector<Vec3>& reference) {
-    constexpr double kApart = 0.02;  // spacings
     std::vector<int> first(surface.site.size(), -1), point(reference.size(), -1);
     std::vector<char> shared(surface.site.size(), 0), cut(surface.site.size(), 0);
     for (const VoxelFace& face : surface.face) {
@@ -184,12 +163,80 @@ void part_touching(const Aggregate& matter, const VoxelSurface& surface,
     for (std::size_t v = 0; v < reference.size(); ++v) {
         const int p = point[v];
         if (p < 0 || !shared[p] || cut[p]) continue;
-        const CellBox box = cell_box(matter, owner[v].cell);
-        const Vec3 half = corner_step(owner[v].corner).cast<double>();
-        const Vec3 middle = Vec3::Constant(0.25) + 0.5 * half;  // of the voxel, in the cell
-        const Vec3 way = box.low + middle.cwiseProduct(box.size) - reference[v];
-        const double far = way.norm();
-        if (far > 0) reference[v] += kApart * matter.lattice.spacing / far * way;
+        into_voxel(matter, owner[v], reference[v]);
+    }
+}
+
+// By where the points are.
+std::vector<Vec3> place_vertices(const Aggregate& matter, const VoxelSurface& surface,
+                                 const std::vector<Owner>& owner, const std::vector<Vec3>& place) {
+    std::vector<Vec3> vertex(surface.vertex_count);
+    for (const VoxelFace& face : surface.face) {
+        for (int k = 0; k < 4; ++k) vertex[face.vertex[k]] = place[face.point[k]];
+    }
+    part_touching(matter, surface, owner, vertex);
+    std::vector<char> placed(vertex.size(), 0);
+    for (const VoxelFace& face : surface.face) {
+        for (int k = 0; k < 4; ++k) {
+            const int v = face.middle[k];
+            if (v < 0 || placed[v]) continue;
+            placed[v] = 1;
+            vertex[v] = 0.5 * (vertex[face.vertex[k]] + vertex[face.vertex[(k + 1) % 4]]);
+            if (!owner[v].at_cut) into_voxel(matter, owner[v], vertex[v]);
+        }
+    }
+    return vertex;
+}
+
+// Parts the triangles at the edges that have a vertex within.
+void split_at_middles(const VoxelSurface& surface, TriMesh& mesh) {
+    std::vector<std::pair<int, std::array<int, 3>>> split;  // triangle: two ends, and the middle
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        const VoxelFace& face = surface.face[f];
+        for (int k = 0; k < 4; ++k) {
+            if (face.middle[k] < 0) continue;
+            const int from = face.vertex[k], to = face.vertex[(k + 1) % 4];
+            for (int t : {static_cast<int>(2 * f), static_cast<int>(2 * f) + 1}) {
+                const Corners& c = mesh.triangle[t];
+                for (int side = 0; side < 3; ++side) {
+                    if (c[side] != from || c[(side + 1) % 3] != to) continue;
+                    split.push_back({t, {from, to, face.middle[k]}});
+                }
+            }
+        }
+    }
+    if (split.empty()) return;
+    const TriMesh whole = mesh;
+    const auto clear = [](auto& array) { array.clear(); };
+    for_each_triangle_array(clear, mesh);
+    EdgeAttributes attributes(mesh);
+    const auto copy = [](std::size_t t) {
+        return [t](auto& array, const auto& from) {
+            if (!from.empty()) array.push_back(from[t]);
+        };
+    };
+    auto next = split.begin();
+    for (std::size_t t = 0; t < whole.triangle.size(); ++t) {
+        const std::size_t first = mesh.triangle.size();
+        for_each_triangle_array(copy(t), mesh, whole);
+        for (; next != split.end() && next->first == static_cast<int>(t); ++next) {
+            const auto& [from, to, middle] = next->second;
+            for (std::size_t n = first, end = mesh.triangle.size(); n < end; ++n) {
+                for (int k = 0; k < 3; ++k) {
+                    const int m = (k + 1) % 3;
+                    if (mesh.triangle[n][k] != from || mesh.triangle[n][m] != to) continue;
+                    for_each_triangle_array(copy(t), mesh, whole);
+                    mesh.triangle.back() = mesh.triangle[n];
+                    mesh.triangle.back()[k] = mesh.triangle[n][m] = middle;
+                    if (mesh.triangle_uv.empty()) continue;
+                    const Corners uv = mesh.triangle_uv[n];
+                    mesh.triangle_uv.back() = uv;
+                    const int at =
+                        attributes.uv(middle, std::min(uv[k], uv[m]), std::max(uv[k], uv[m]), 0.5);
+                    mesh.triangle_uv.back()[k] = mesh.triangle_uv[n][m] = at;
+                }
+            }
+        }
     }
 }
 
@@ -198,26 +245,31 @@ void part_touching(const Aggregate& matter, const VoxelSurface& surface,
 BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look, double roughness) {
     const SurfaceSamples samples(matter);
     VoxelSurface surface = voxel_surface(matter, samples);
-    const std::vector<Vec3> place =
-        place_points(matter, samples, surface, Warp(matter.lattice, roughness));
     const Pieces pieces = find_pieces(matter);
-    drop_crumbs(matter, pieces, place, surface);
+    const std::vector<Vec3> place =
+        place_points(matter, pieces, samples, Warp(matter.lattice, roughness), surface);
 
     BoundarySkin skin;
     Mount& mount = skin.mount;
-    mount.reference.resize(surface.vertex_count);
     mount.cell.resize(surface.vertex_count);
     mount.side.resize(surface.vertex_count);
     std::vector<Owner> owner(surface.vertex_count);
     for (const VoxelFace& face : surface.face) {
-        for (int k = 0; k < 4; ++k) {
-            Owner& own = owner[face.vertex[k]];
-            if (own.cell < 0) own.cell = face.cell, own.corner = face.corner;
-            own.at_cut = own.at_cut || face.cut;
-            mount.reference[face.vertex[k]] = place[face.point[k]];
-        }
+        const auto own = [&](int v) {
+            if (v < 0) return;
+            if (owner[v].cell < 0) owner[v].cell = face.cell, owner[v].corner = face.corner;
+            owner[v].at_cut = owner[v].at_cut || face.cut;
+        };
+        for (int k = 0; k < 4; ++k) own(face.vertex[k]), own(face.middle[k]);
     }
-    part_touching(matter, surface, owner, mount.reference);
+    mount.reference = place_vertices(matter, surface, owner, place);
+    std::vector<Facet> facet;
+    for (const VoxelFace& face : surface.face)
+        facet.push_back({face.vertex, face.middle, face.diagonal});
+    std::vector<char> fixed(surface.vertex_count);
+    for (int v = 0; v < surface.vertex_count; ++v) fixed[v] = owner[v].at_cut;
+    part_crossings(facet, place_vertices(matter, surface, owner, lattice_places(matter, surface)),
+                   fixed, matter.lattice.spacing, mount.reference);
     for (int v = 0; v < surface.vertex_count; ++v) {
         bind_vertex(matter, pieces, mount.reference[v], owner[v], mount.cell[v], mount.side[v]);
     }
@@ -229,18 +281,15 @@ BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look, double 
     mesh.material[0].name = "boundary";
     mesh.material[1].name = kCutMaterial;
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
-        std::array<int, 4> v = surface.face[f].vertex;
-        const auto length = [&](int a, int b) {
-            return (mount.reference[v[a]] - mount.reference[v[b]]).squaredNorm();
-        };
-        if (!(length(0, 2) <= length(1, 3))) v = {v[1], v[2], v[3], v[0]};
-        for (const Corners& half : halves(v)) {
+        for (const Corners& half :
+             halves_of(surface.face[f].vertex, mount.reference, surface.face[f].diagonal)) {
             mesh.triangle.push_back(half);
             mesh.triangle_material.push_back(surface.face[f].cut);
             mesh.triangle_polygon.push_back(static_cast<int>(f));
         }
     }
     if (look != nullptr) look->paint(mount.reference, mesh);
+    split_at_middles(surface, mesh);
     constexpr double kCrease = 0.7;  // [rad]
     smooth_by_crease_angle(mesh, kCrease);
     return skin;

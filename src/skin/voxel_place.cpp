@@ -10,6 +10,8 @@
 #include "skin/carrier.h"
 #include "skin/cut_faces.h"
 #include "skin/surface_samples.h"
+#include "skin/voxel_crossings.h"
+#include "skin/voxel_crumbs.h"
 
 namespace swage {
 
@@ -28,10 +30,12 @@ class Placer {
           surface_(surface),
           samples_(samples),
           warp_(warp),
-          a_(matter.lattice.spacing) {}
+          a_(matter.lattice.spacing),
+          start_(lattice_places(matter, surface)) {}
 
-    std::vector<Vec3> run() {
-        start();
+    // `surface`: the same.
+    std::vector<Vec3> run(const Pieces& pieces, VoxelSurface& surface) {
+        place_ = start_;
         find_kinds();
         target_ = cut_targets(matter_, surface_, place_);
         find_neighbors();
@@ -41,26 +45,22 @@ class Placer {
         // The steps of a cut take longer to even out, for only then no triangle is folded.
         for (int round = 0; round < kCutRounds && any_cut(); ++round) settle(true, true);
         unfold();
+        drop_crumbs(matter_, pieces, place_, surface);
         if (!warp_.is_none()) roughen();
         make_up_volume();
         unfold();
+        if (part_crossings(facets(), start_, on_cut_, a_, place_)) make_up_volume();
         return std::move(place_);
     }
 
   private:
-    std::size_t count() const { return surface_.site.size(); }
-
-    void start() {
-        place_.resize(count());
-        const CellBox box = cell_box(matter_, 0);
-        const Vec3 low =
-            box.low - box.size.cwiseProduct(matter_.lattice.cell_site(0).cast<double>());
-        for (std::size_t s = 0; s < count(); ++s) {
-            const HalfSite& at = surface_.site[s];
-            place_[s] = low + 0.5 * box.size.cwiseProduct(Vec3(at[0], at[1], at[2]));
-        }
-        start_ = place_;
+    std::vector<Facet> facets() const {
+        std::vector<Facet> facet;
+        for (const VoxelFace& face : surface_.face)
+            facet.push_back({.corner = face.point, .diagonal = face.diagonal});
+        return facet;
     }
+    std::size_t count() const { return surface_.site.size(); }
 
     // Whether a point lies on the outer surface, exactly so or only near it.
     void find_kinds() {
@@ -339,7 +339,8 @@ class Placer {
     const double a_;
     const bool any_dropped_ = std::any_of(surface_.kept.begin(), surface_.kept.end(),
                                           [](CornerMask kept) { return kept != kAllCorners; });
-    std::vector<Vec3> start_, place_, normal_;
+    const std::vector<Vec3> start_;
+    std::vector<Vec3> place_, normal_;
     std::vector<Vec3> facing_;  // normals before it meets the true surface: tell edges from sides
     std::vector<char> outer_, on_cut_, exact_, fixed_axis_, slides_;
     std::vector<std::optional<CutTarget>> target_;
@@ -348,10 +349,22 @@ class Placer {
 
 }  // namespace
 
-std::vector<Vec3> place_points(const Aggregate& matter, const SurfaceSamples& samples,
-                               const VoxelSurface& surface, const Warp& warp) {
+std::vector<Vec3> lattice_places(const Aggregate& matter, const VoxelSurface& surface) {
+    std::vector<Vec3> place;
+    place.reserve(surface.site.size());
+    const CellBox box = cell_box(matter, 0);
+    const Vec3 low = box.low - box.size.cwiseProduct(matter.lattice.cell_site(0).cast<double>());
+    for (const HalfSite& at : surface.site) {
+        place.push_back(low + 0.5 * box.size.cwiseProduct(Vec3(at[0], at[1], at[2])));
+    }
+    return place;
+}
+
+std::vector<Vec3> place_points(const Aggregate& matter, const Pieces& pieces,
+                               const SurfaceSamples& samples, const Warp& warp,
+                               VoxelSurface& surface) {
     if (surface.face.empty()) return {};
-    return Placer(matter, samples, surface, warp).run();
+    return Placer(matter, samples, surface, warp).run(pieces, surface);
 }
 
 }  // namespace swage

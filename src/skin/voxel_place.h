@@ -13,7 +13,12 @@ namespace swage {
 // One place [m] for each site: on the body's true surface where that is known; on smooth cut faces
 // half-way between the particles that were severed; where they broke by load, off that by the warp.
 // The enclosed volume is the matter's.
-std::vector<Vec3> place_points(const Aggregate& matter, const SurfaceSamples& samples,
-                               const VoxelSurface& surface, const Warp& warp);
+// Crumbs (skin/voxel_crumbs.h) are dropped.
+std::vector<Vec3> place_points(const Aggregate& matter, const Pieces& pieces,
+                               const SurfaceSamples& samples, const Warp& warp,
+                               VoxelSurface& surface);
+
+// Where the voxels have the sites [m].
+std::vector<Vec3> lattice_places(const Aggregate& matter, const VoxelSurface& surface);
 
 }  // namespace swage

@@ -30,6 +30,8 @@ class Builder {
         collect_faces();
         number_points();
         number_vertices();
+        part_edges();
+        choose_diagonals();
         return std::move(surface_);
     }
 
@@ -165,6 +167,75 @@ class Builder {
         }
     }
 
+    // An edge of the surface: two faces, each with the edge's number there.
+    struct Edge {
+        std::pair<int, int> vertex;  // the lower one first
+        int face, side, other, other_side;
+    };
+
+    void part_edges() {
+        std::vector<Edge> edge = crowded_edges();
+        std::stable_sort(edge.begin(), edge.end(),
+                         [](const Edge& p, const Edge& q) { return p.vertex < q.vertex; });
+        for (std::size_t n = 1; n < edge.size(); ++n) {
+            const Edge& e = edge[n];
+            if (e.vertex != edge[n - 1].vertex) continue;
+            surface_.face[e.face].middle[e.side] = surface_.vertex_count;
+            surface_.face[e.other].middle[e.other_side] = surface_.vertex_count;
+            ++surface_.vertex_count;
+        }
+    }
+
+    void choose_diagonals() {
+        for (std::size_t f = 0; f < surface_.face.size(); ++f) {
+            VoxelFace& face = surface_.face[f];
+            if (!face.cut) continue;
+            const Voxel beyond = neighbor({face.cell, face.corner}, face.direction);
+            const int other = face_at(beyond, opposite(face.direction));
+            const auto& there = surface_.face[other].vertex;
+            const auto is_shared = [&](int k) {
+                return std::find(there.begin(), there.end(), face.vertex[k]) != there.end();
+            };
+            const bool first = is_shared(0) && is_shared(2), second = is_shared(1) && is_shared(3);
+            if (first && second) {
+                face.diagonal = static_cast<int>(f) < other ? Diagonal::first : Diagonal::second;
+            } else if (first || second) {
+                face.diagonal = first ? Diagonal::second : Diagonal::first;
+            }
+        }
+    }
+
+    // Those at places where more than two faces meet, each once.
+    std::vector<Edge> crowded_edges() {
+        std::vector<int> faces(3 * surface_.site.size(), 0);  // at the edge up along each axis
+        const auto place_of = [&](std::size_t f, int k) -> int& {
+            const int from = surface_.face[f].point[k], to = surface_.face[f].point[(k + 1) % 4];
+            int axis = 0;
+            while (surface_.site[from][axis] == surface_.site[to][axis]) ++axis;
+            return faces[3 * std::min(from, to) + axis];
+        };
+        for (std::size_t f = 0; f < surface_.face.size(); ++f) {
+            for (int k = 0; k < 4; ++k) ++place_of(f, k);
+        }
+        std::vector<Edge> edge;
+        for (std::size_t f = 0; f < surface_.face.size(); ++f) {
+            const VoxelFace& face = surface_.face[f];
+            for (int k = 0; k < 4; ++k) {
+                if (place_of(f, k) <= 2) continue;
+                const int other = face_beyond(face, across_edge(f, k)), own = static_cast<int>(f);
+                if (other < own) continue;
+                const auto& there = surface_.face[other].point;
+                int m = 0;
+                while (there[m] != face.point[(k + 1) % 4] || there[(m + 1) % 4] != face.point[k]) {
+                    ++m;
+                }
+                edge.push_back(
+                    {std::minmax(face.vertex[k], face.vertex[(k + 1) % 4]), own, k, other, m});
+            }
+        }
+        return edge;
+    }
+
     // Direction in the face's plane from its middle over the edge from corner k to the next.
     int across_edge(std::size_t f, int k) const {
         const auto& site = face_site_[f];
@@ -186,6 +257,16 @@ class Builder {
 };
 
 }  // namespace
+
+std::array<Corners, 2> halves_of(const std::array<int, 4>& corner, const std::vector<Vec3>& place,
+                                 std::optional<Diagonal> diagonal) {
+    const auto length = [&](int a, int b) {
+        return (place[corner[a]] - place[corner[b]]).squaredNorm();
+    };
+    const bool is_first = diagonal ? *diagonal == Diagonal::first : length(0, 2) <= length(1, 3);
+    if (is_first) return halves(corner);
+    return halves({corner[1], corner[2], corner[3], corner[0]});
+}
 
 VoxelSurface voxel_surface(const Aggregate& matter, const SurfaceSamples& samples) {
     return Builder(matter, samples).build();

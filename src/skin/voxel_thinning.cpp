@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources: simple points for 6-connected bodies in a 26-connected outside, G. Bertrand and
+// Sources: simple points for 6-connected bodies in an 18-connected outside, G. Bertrand and
 // G. Malandain, "A new characterization of three-dimensional simple points", 1994.
 #include "skin/voxel_thinning.h"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <cstdint>
 #include <optional>
 
 #include "base/parallel.h"
@@ -22,54 +23,59 @@ constexpr float kFull = 0.99f;
 // would make a fold of the surface drawn around them.
 constexpr double kOutside = 0.35;
 
-// The 27 voxels around one, numbered (x + 1) + 3 (y + 1) + 9 (z + 1); 13 is the middle.
-using Around = std::array<bool, 27>;
+// A bit for each of the 27 voxels around one, numbered (x + 1) + 3 (y + 1) + 9 (z + 1); 13 is the
+// middle.
+using Around = std::uint32_t;
 constexpr int kMiddle = 13;
+constexpr Around kAll = (1u << 27) - 1;
 
-struct Steps {
-    int all, longest;  // along the axes
-};
-Steps steps_between(int a, int b) {
-    const int x = std::abs(a % 3 - b % 3), y = std::abs(a / 3 % 3 - b / 3 % 3),
-              z = std::abs(a / 9 - b / 9);
-    return {x + y + z, std::max({x, y, z})};
+constexpr int steps_between(int a, int b) {
+    const auto along = [](int p, int q) { return p > q ? p - q : q - p; };
+    const int x = along(a % 3, b % 3), y = along(a / 3 % 3, b / 3 % 3), z = along(a / 9, b / 9);
+    return x > 1 || y > 1 || z > 1 ? 4 : x + y + z;
 }
 
-// Connected parts among `member`, over faces only or over faces, edges and corners; only parts that
-// hold a voxel at most `near` steps from the middle count.
-int count_parts(const Around& member, bool faces_only, int near) {
-    Around seen{};
-    int parts = 0;
-    for (int start = 0; start < 27; ++start) {
-        if (!member[start] || seen[start] || steps_between(start, kMiddle).all > near) continue;
-        ++parts;
-        std::array<int, 27> open;
-        int count = 0;
-        open[count++] = start;
-        seen[start] = true;
-        while (count > 0) {
-            const int at = open[--count];
-            for (int n = 0; n < 27; ++n) {
-                if (!member[n] || seen[n]) continue;
-                const Steps steps = steps_between(at, n);
-                if (faces_only ? steps.all != 1 : steps.longest != 1) continue;
-                seen[n] = true;
-                open[count++] = n;
-            }
+// For each voxel those that it meets: at a face, at a face or an edge.
+constexpr std::array<Around, 27> meeting_at_most(int steps) {
+    std::array<Around, 27> met{};
+    for (int n = 0; n < 27; ++n) {
+        for (int m = 0; m < 27; ++m) {
+            if (m != n && steps_between(n, m) <= steps) met[n] |= 1u << m;
         }
     }
-    return parts;
+    return met;
+}
+constexpr std::array<Around, 27> kByFaces = meeting_at_most(1), kByEdges = meeting_at_most(2);
+
+Around met_by(Around some, const std::array<Around, 27>& meets) {
+    Around met = 0;
+    for (; some != 0; some &= some - 1) met |= meets[std::countr_zero(some)];
+    return met;
 }
 
-// Whether the middle may go without changing the topology of body and outside.
-bool is_simple(const Around& body) {
-    Around inner{}, outside{};
-    for (int n = 0; n < 27; ++n) {
-        if (n == kMiddle) continue;
-        inner[n] = body[n] && steps_between(n, kMiddle).all <= 2;
-        outside[n] = !body[n];
+// Whether of what hangs together among `member`, as voxels meet, one part alone meets the middle.
+bool one_part_meets(Around member, const std::array<Around, 27>& meets) {
+    const Around near = member & meets[kMiddle];
+    if (near == 0) return false;
+    Around part = near & -near;
+    for (Around fresh = part; fresh != 0;) {
+        fresh = met_by(fresh, meets) & member & ~part;
+        part |= fresh;
     }
-    return count_parts(inner, true, 1) == 1 && count_parts(outside, false, 3) == 1;
+    return (near & ~part) == 0;
+}
+
+// Whether the middle may go without changing the topology of body and outside. NOTE: the surface
+// parts what meets at a corner only, inside and outside. Were the outside to hang together over
+// corners, holes of a voxel would be made that have a surface of their own.
+bool is_simple(Around body) {
+    constexpr Around kCenter = 1u << kMiddle;
+    constexpr Around kSides = kByFaces[kMiddle], kBesideEdges = kByEdges[kMiddle] & ~kSides;
+    const Around others = body & ~kCenter;
+    // What meets the middle's edges counts where it meets a voxel at one of its faces.
+    const Around lone = others & kBesideEdges & ~met_by(others & kSides, kByFaces);
+    return one_part_meets(others & ~lone, kByFaces) &&
+           one_part_meets(kAll & ~body & ~kCenter, kByEdges);
 }
 
 class Thinning {
@@ -240,16 +246,16 @@ class Thinning {
     // they would be left as a thread.
     bool may_go(const Candidate& candidate) const {
         std::array<Voxel, 27> voxel;
-        Around body;
+        Around body = 0;
         for (int n = 0; n < 27; ++n) {
             voxel[n] = voxel_around(candidate, n);
-            body[n] = has(kept_, voxel[n]);
+            if (has(kept_, voxel[n])) body |= 1u << n;
         }
         if (candidate.is_cut) {
             if (!keep_own_side(voxel, body)) return false;
             bool at_rim = false, at_shelf = false;
             for (int n = 0; n < 27; ++n) {
-                at_rim |= body[n] && !has(hollow_, voxel[n]);
+                at_rim |= (body >> n & 1) && !has(hollow_, voxel[n]);
                 at_shelf |= has(shelf_, voxel[n]);
             }
             if (at_rim && !(takes_rims_ && at_shelf)) return false;
@@ -271,7 +277,7 @@ class Thinning {
             for (int n = 0; n < 27; ++n) {
                 for (int axis = 0; axis < 3; ++axis) {
                     const int next = n + kStep[axis];
-                    if (n / kStep[axis] % 3 < 2 && body[n] && body[next]) {
+                    if (n / kStep[axis] % 3 < 2 && (body >> n & 1) && (body >> next & 1)) {
                         act(n, next, joined(n, axis, next));
                     }
                 }
@@ -285,7 +291,9 @@ class Thinning {
             ends |=
                 !is && sets.root(low) == sets.root(high) && sets.root(low) == sets.root(kMiddle);
         });
-        for (int n = 0; n < 27; ++n) body[n] = body[n] && sets.root(n) == sets.root(kMiddle);
+        for (int n = 0; n < 27; ++n) {
+            if (sets.root(n) != sets.root(kMiddle)) body &= ~(1u << n);
+        }
         return !ends;
     }
 
