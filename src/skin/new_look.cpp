@@ -16,7 +16,7 @@ namespace swage {
 
 namespace {
 
-constexpr std::size_t kChunk = 512;  // squares
+constexpr std::size_t kChunk = 512;  // triangles
 // What a corner of a face may be off the face's middle in the texture, over what the middle's
 // triangle makes of the way there: more is another part of the mesh.
 constexpr double kStretch = 3;
@@ -184,12 +184,12 @@ double NewLook::texture_scale(int triangle) const {
 struct NewLook::Face {
     int like = 0;  // triangle of the mesh
     bool textured = false;
-    std::array<Vec2, 4> uv;
+    std::array<Vec2, 3> uv;
 };
 
-NewLook::Face NewLook::look_of(const std::array<Vec3, 4>& place,
-                               const std::array<TriangleTree::Nearest, 4>& corner) const {
-    const Vec3 middle = 0.25 * (place[0] + place[1] + place[2] + place[3]);
+NewLook::Face NewLook::look_of(const std::array<Vec3, 3>& place,
+                               const std::array<TriangleTree::Nearest, 3>& corner) const {
+    const Vec3 middle = (place[0] + place[1] + place[2]) / 3;
     const TriangleTree::Nearest at = tree_.nearest(middle);
     Face face{at.triangle, is_textured(at.triangle), {}};
     if (!face.textured) return face;
@@ -198,7 +198,7 @@ NewLook::Face NewLook::look_of(const std::array<Vec3, 4>& place,
     double reach = 0;
     for (const Vec3& p : place) reach = std::max(reach, (p - middle).norm());
     std::vector<int> beyond;  // corners that lie nearest to another part of the texture
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < 3; ++k) {
         const auto [triangle, weight] = corner[k];
         if (chart_[triangle] == chart_[at.triangle] && is_textured(triangle)) {
             face.uv[k] = texture_at(triangle, weight);
@@ -226,47 +226,39 @@ NewLook::Face NewLook::look_of(const std::array<Vec3, 4>& place,
 void NewLook::paint(const std::vector<Vec3>& place, TriMesh& mesh) const {
     std::vector<TriangleTree::Nearest> near(place.size());
     parallel_each(place.size(), kChunk, [&](std::size_t v) { near[v] = tree_.nearest(place[v]); });
-    const std::size_t count = mesh.triangle.size() / 2;
+    const std::size_t count = mesh.triangle.size();
     std::vector<Face> face(count);
-    parallel_each(count, kChunk, [&](std::size_t f) {
-        if (mesh.triangle_material[2 * f] == 1) {
-            face[f].like = near[mesh.triangle[2 * f][0]].triangle;
+    parallel_each(count, kChunk, [&](std::size_t t) {
+        const auto& [a, b, c] = mesh.triangle[t];
+        if (mesh.triangle_material[t] == 1) {
+            face[t].like = near[a].triangle;
             return;
         }
-        const Corners &one = mesh.triangle[2 * f], &other = mesh.triangle[2 * f + 1];
-        const auto of = [&](const auto& all) {
-            return std::array{all[one[0]], all[one[1]], all[one[2]], all[other[2]]};
-        };
-        face[f] = look_of(of(place), of(near));
+        face[t] = look_of({place[a], place[b], place[c]}, {near[a], near[b], near[c]});
     });
     mesh.material = mesh_.material;
     const bool has_cut = std::find(mesh.triangle_material.begin(), mesh.triangle_material.end(),
                                    1) != mesh.triangle_material.end();
     const int cut = has_cut ? cut_material(mesh, mesh_) : -1;
     mesh.part_name = mesh_.part_name;
-    if (!mesh_.triangle_part.empty()) mesh.triangle_part.resize(2 * count);
-    if (!mesh_.triangle_uv.empty()) mesh.triangle_uv.assign(2 * count, {-1, -1, -1});
+    if (!mesh_.triangle_part.empty()) mesh.triangle_part.resize(count);
+    if (!mesh_.triangle_uv.empty()) mesh.triangle_uv.assign(count, {-1, -1, -1});
     std::map<std::tuple<int, double, double>, int> made;  // values, by vertex
-    for (std::size_t f = 0; f < count; ++f) {
-        const bool is_cut = mesh.triangle_material[2 * f] == 1;
-        const int own = mesh_.triangle_material.empty() ? 0 : mesh_.triangle_material[face[f].like];
-        mesh.triangle_material[2 * f] = mesh.triangle_material[2 * f + 1] = is_cut ? cut : own;
+    for (std::size_t t = 0; t < count; ++t) {
+        const bool is_cut = mesh.triangle_material[t] == 1;
+        const int own = mesh_.triangle_material.empty() ? 0 : mesh_.triangle_material[face[t].like];
+        mesh.triangle_material[t] = is_cut ? cut : own;
         if (!mesh.triangle_part.empty()) {
-            mesh.triangle_part[2 * f] = mesh.triangle_part[2 * f + 1] =
-                mesh_.triangle_part[face[f].like];
+            mesh.triangle_part[t] = mesh_.triangle_part[face[t].like];
         }
-        if (!face[f].textured) continue;
-        std::array<int, 4> at;
-        for (int k = 0; k < 4; ++k) {
-            const int v = k < 3 ? mesh.triangle[2 * f][k] : mesh.triangle[2 * f + 1][2];
-            const Vec2& uv = face[f].uv[k];
-            const auto [entry, fresh] =
-                made.emplace(std::tuple(v, uv.x(), uv.y()), static_cast<int>(mesh.uv.size()));
+        if (!face[t].textured) continue;
+        for (int k = 0; k < 3; ++k) {
+            const Vec2& uv = face[t].uv[k];
+            const auto [entry, fresh] = made.emplace(
+                std::tuple(mesh.triangle[t][k], uv.x(), uv.y()), static_cast<int>(mesh.uv.size()));
             if (fresh) mesh.uv.push_back(uv);
-            at[k] = entry->second;
+            mesh.triangle_uv[t][k] = entry->second;
         }
-        mesh.triangle_uv[2 * f] = {at[0], at[1], at[2]};
-        mesh.triangle_uv[2 * f + 1] = {at[0], at[2], at[3]};
     }
     if (mesh_.position_color.empty()) return;
     for (const auto& [triangle, weight] : near) {

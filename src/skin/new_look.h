@@ -39,14 +39,14 @@ class NewLook {
     explicit NewLook(const TriMesh& mesh);
     const TriMesh& mesh() const { return mesh_; }  // of which another is made that is alike
 
-    // `mesh`: a boundary (skin/boundary.h), made of squares, two triangles each; `place`: of its
-    // positions at molding. Faces of a cut, of its material 1, get kCutMaterial and no texture.
+    // `mesh`: a boundary (skin/boundary.h); `place`: of its positions at molding. Faces of a cut,
+    // of its material 1, get kCutMaterial and no texture.
     void paint(const std::vector<Vec3>& place, TriMesh& mesh) const;
 
   private:
     struct Face;
-    Face look_of(const std::array<Vec3, 4>& place,
-                 const std::array<TriangleTree::Nearest, 4>& corner) const;
+    Face look_of(const std::array<Vec3, 3>& place,
+                 const std::array<TriangleTree::Nearest, 3>& corner) const;
     bool is_textured(int triangle) const;
     Vec2 texture_at(int triangle, const Vec3& weight) const;
     std::vector<int> patch_about(int triangle, const Vec3& middle, double reach) const;
