@@ -129,9 +129,10 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     const double filled = filled_cells(layers) * cell;
     if (surplus * cell > 1e-6 * volume || deficit * cell > 1e-6 * volume) {
         findings.push_back(
-            fmt::format("parts of the surface overlap or are inside out: {:.4g} m3 filled more "
-                        "than once and {:.4g} m3 filled negatively are left out; the matter has "
-                        "{:.6g} m3, the surface encloses {:.6g} m3",
+            fmt::format("parts of the surface overlap or are inside out: {:.4g} m3 beyond full "
+                        "cells and {:.4g} m3 filled negatively are left out, while what overlaps "
+                        "within cells that are not full counts twice; the matter has {:.6g} m3, "
+                        "the surface encloses {:.6g} m3",
                         surplus * cell, deficit * cell, filled, volume));
     }
     if (lost * cell > 1e-6 * volume) {
