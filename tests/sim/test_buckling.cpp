@@ -39,6 +39,15 @@ struct Column {
         apparatus.grip.push_back(grip);
         drive.world_from_grip.push_back({Quat::Identity(), at});
     }
+    // On to this strength of its load.
+    FrameReport press(Simulation& simulation, double strength) {
+        Drive to = drive;
+        to.time += 1;
+        to.load_strength = {strength};
+        const FrameReport report = simulation.advance(drive, to);
+        drive = to;
+        return report;
+    }
     double sideways() const {
         double most = 0;
         for (std::size_t p = 0; p < matter.particle_count(); ++p) {
@@ -96,11 +105,7 @@ TEST_CASE("pressure all round a clamped column does not buckle it") {
     column.drive.load_strength = {0.0};
     Simulation simulation(column.matter, column.apparatus, {});
     for (int frame = 1; frame <= 5; ++frame) {
-        Drive to = column.drive;
-        to.time += 1;
-        to.load_strength = {0.2 * frame};
-        CHECK(simulation.advance(column.drive, to).warning.empty());
-        column.drive = to;
+        CHECK(column.press(simulation, 0.2 * frame).warning.empty());
     }
     CHECK(column.sideways() < 0.1 * kSide);
 }
@@ -141,13 +146,7 @@ TEST_CASE("a column that bears more than Euler's load bends to where the elastic
     column.apparatus.load.push_back(load);
     column.drive.load_strength = {0.0};
     Simulation simulation(column.matter, column.apparatus, {});
-    for (int frame = 1; frame <= 10; ++frame) {
-        Drive to = column.drive;
-        to.time += 1;
-        to.load_strength = {0.1 * frame};
-        simulation.advance(column.drive, to);
-        column.drive = to;
-    }
+    for (int frame = 1; frame <= 10; ++frame) column.press(simulation, 0.1 * frame);
     double low = 0, high = 1;  // of k^2
     for (int round = 0; round < 60; ++round) {
         const double middle = 0.5 * (low + high);

@@ -63,6 +63,13 @@ Material dull(double damping_ratio) {
     return m;
 }
 
+Material brittle() {
+    Material m = dull(0.05);
+    m.strength = 3e4;
+    m.toughness = 5;
+    return m;
+}
+
 // One comes down on another, aslant, which meets it from the first frame to the 34th.
 std::vector<Aggregate> striking(double damping_ratio) {
     const Material m = dull(damping_ratio);
@@ -144,10 +151,7 @@ TEST_CASE("what is pressed as a stage ends presses as hard in the next, whatever
 }
 
 TEST_CASE("what has broken and lies on itself makes no energy where a stage begins") {
-    Material m = dull(0.05);
-    m.strength = 3e4;
-    m.toughness = 5;
-    const std::vector<Aggregate> bodies = halved(m);
+    const std::vector<Aggregate> bodies = halved(brittle());
     for (Solver solver : {Solver::explicit_steps, Solver::energy_stepped}) {
         const SimSettings s = falling(solver);
         for (int frames : {20, 25}) {
@@ -164,10 +168,7 @@ TEST_CASE("what has broken and lies on itself makes no energy where a stage begi
 }
 
 TEST_CASE("what a stage hands on is what the next begins with") {
-    Material m = dull(0.05);
-    m.strength = 3e4;
-    m.toughness = 5;
-    const std::vector<Aggregate> bodies = halved(m);
+    const std::vector<Aggregate> bodies = halved(brittle());
     const Stage breaks{24, falling()}, none{0, falling()};
     const std::string once = moved(bodies, {breaks, none}).handed_on;
     CHECK(once.size() > 10000);
