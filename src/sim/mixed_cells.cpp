@@ -71,9 +71,9 @@ OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws
     return one;
 }
 
-// What is flat has no axes to remember it by.
+// What has not flowed remembers nothing; what is flat has no axes to remember it by.
 void remember(const Vec3& jump, MixedCell& cell) {
-    cell.jump = jump.allFinite() ? jump : Vec3::Zero();
+    cell.jump = cell.hardening() > 0 && jump.allFinite() ? jump : Vec3::Zero();
 }
 
 // Of one of the two materials, with its part in the jump.
@@ -198,7 +198,6 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
         }
         const OneMixed one = one_mixed(matter, laws, cell, seen);
         const Triple<double> jump = jump_in_cell(one.found);
-        remember({jump.x, jump.y, jump.z}, cell);
         SlotLengths was;
         if (growths) was = rest_lengths(matter, cell.cell, &cell);
         for (int p = 0; p < 2; ++p) {
@@ -213,6 +212,7 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
                 cell.flowed[p][s] = static_cast<float>(now);
             });
         }
+        remember({jump.x, jump.y, jump.z}, cell);
         if (growths == nullptr) continue;
         const SlotLengths is = rest_lengths(matter, cell.cell, &cell);
         for (int slot = 0; slot < kCellConnectionCount; ++slot) {
