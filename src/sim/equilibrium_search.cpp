@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/settling.h"
+#include "sim/surface_forces.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -16,6 +17,7 @@ constexpr double kNudge = 0.02;  // spacings: the least that a body that buckles
 constexpr int kMostTurns = 4;
 constexpr double kDriven = 0.03;  // of what drives a body that buckles may be left over
 constexpr double kFinest = 1e-4;  // of the tolerance: less is never asked for
+constexpr double kWithin = 0.1;   // of a motion along the surface: what it goes across
 constexpr double kAstray = 0.01;  // of the way that the body has gone
 
 // Share of the drag that Newton's method goes ahead with, and that stays when it is found to hold
@@ -80,6 +82,23 @@ bool go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
     forces.hold = hold;
     work_at(driven ? far : 0);
     return driven;
+}
+
+// Whether it takes the matter round within its shape, as it would a ball between smooth plates: of
+// what is round that is neutral, and no buckling, whatever the lattice makes of it.
+bool keeps_the_shape(const Aggregate& matter, const Vec3Array& way) {
+    double across = 0, all = 0;
+    for (std::size_t n = 0; n < matter.surface.size(); ++n) {
+        const Vec3 area = surface_area_vector(matter, int(n));
+        const SurfacePoints::Carriers by = matter.surface.carriers(n);
+        Vec3 goes = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) goes += by.weight[c] * way.at(by.corner[c]);
+        const double size = area.norm();
+        if (!(size > 0)) continue;
+        across += area.dot(goes) * area.dot(goes) / size;
+        all += size * goes.squaredNorm();
+    }
+    return across < kWithin * kWithin * all;
 }
 
 // What is in some grip, or all, has gone [m]: other pieces go anywhere.
@@ -217,6 +236,7 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
             if (soft.left <= farthest_astray(matter, soft.gone) || !leave_less()) break;
             continue;
         }
+        if (keeps_the_shape(matter, newton_->softest_motion())) break;
         ++turn;
         // The forces know more than the tangent does: how a pressure turns with the surface.
         if (!go_along(forces, move.to, newton_->softest_motion())) break;

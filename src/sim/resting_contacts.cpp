@@ -107,7 +107,8 @@ std::vector<HeldPoint> RestingContacts::held_points(const Aggregate& matter, con
         const Vec3& normal = t.distance.normal;
         Mat3 stiffness = k * Mat3::Identity();
         const bool is_smooth = pairs_.friction(pair) == 0;  // never sticks, not even at rest
-        if (is_smooth || (t.contact.slips && slipping == Slipping::free)) {
+        if ((is_smooth && slipping != Slipping::stuck) ||
+            (t.contact.slips && slipping == Slipping::free)) {
             stiffness = k * normal * normal.transpose();
         } else if (t.contact.slips && slipping == Slipping::lawful) {
             const Vec3 anchor = now.world_from_tool[pair.tool] * pairs_.anchor(pair);

@@ -38,7 +38,7 @@ class RestingContacts {
     // What holds the body now: touching points and gripped ones. Those that slip are free along the
     // tool's surface, or held as if they stuck: turned back they would. Or it is as the law has it,
     // and not symmetric.
-    enum class Slipping { free, held, lawful };
+    enum class Slipping { free, held, stuck, lawful };
     std::vector<HeldPoint> held_points(const Aggregate& matter, const Drive& now,
                                        Slipping slipping) const;
 

@@ -104,7 +104,7 @@ class Settling {
     void hold() {
         coarse_.hold(
             forces_.matter,
-            forces_.contacts.held_points(forces_.matter, move_.to, RestingContacts::Slipping::held),
+            forces_.contacts.held_points(forces_.matter, move_.to, RestingContacts::Slipping::stuck),
             forces_.self.pressed());
     }
 
