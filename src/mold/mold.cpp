@@ -4,10 +4,12 @@
 #include "mold/mold.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_check.h"
 #include "matter/material_volumes.h"
 #include "mold/caps.h"
+#include "mold/filled_gaps.h"
 #include "mold/insets.h"
 #include "mold/moments.h"
 #include "mold/prepare.h"
@@ -162,6 +164,18 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
             "those less than two cells ({}) apart may, or are too small for these; a "
             "smaller spacing keeps them apart",
             bodies, pieces, length_text(frame.spacing), length_text(2 * frame.spacing)));
+    } else if (const std::vector<FilledGap> gaps = filled_gaps(layers, frame); !gaps.empty()) {
+        const FilledGap& largest = gaps[0];
+        const auto at = [&](int axis) { return length_text(largest.place[axis]); };
+        findings.push_back(fmt::format(
+            "a gap in the mesh of about {} is too narrow for cells of {}, which hold its sides "
+            "together over {} about [{}, {}, {}]{}; spacing = \"{}\" keeps it open",
+            about(largest.width, 2), length_text(frame.spacing), area_text(largest.area), at(0),
+            at(1), at(2),
+            gaps.size() > 1 ? fmt::format(", as they do at {}",
+                                          counted(gaps.size() - 1, "other place", "other places"))
+                            : "",
+            about(0.5 * largest.width, 2)));
     } else if (wanted && surplus * cell <= 1e-6 * volume && euler_of(matter) != *wanted) {
         findings.push_back(fmt::format(
             "with cells of {} the matter has other holes or handles than the mesh: parts "
