@@ -74,11 +74,6 @@ template <typename V>
 struct Fading {
     V left, mean, bend;
 };
-SWAGE_INLINE double faded(double x) { return lane_power::power_of_e<long long>(-x); }
-template <LaneVector V>
-SWAGE_INLINE V faded(const V& x) {
-    return lane_power::power_of_e<typename LaneBatch<kWidthOf<V>>::Indices, V>(-x);
-}
 template <typename V>
 SWAGE_INLINE Fading<V> fading(const V& x) {  // x >= 0
     constexpr double kGone = 600, kSmall = 0.5;
@@ -97,18 +92,10 @@ SWAGE_INLINE Fading<V> fading(const V& x) {  // x >= 0
     for (int k = kTerms - 2; k >= 0; --k) sum = term[k] + x * sum;
     const V mean = (1.0 + x * sum) / (1.0 + x);
     const V limit = kSmall + V{}, safe = larger(x, limit);
-    const V far = faded(V(-larger(-safe, V{} - kGone))), far_mean = (1.0 - far) / safe,
+    const V far = power_of_e(larger<V>(-safe, V{} - kGone)), far_mean = (1.0 - far) / safe,
             far_bend = (far_mean - far) / safe;
     const auto small = x < limit;
     return {small ? 1.0 - x * mean : far, small ? mean : far_mean, small ? sum : far_bend};
-}
-
-SWAGE_INLINE bool any_above_zero(double v) { return v > 0; }
-template <LaneVector V>
-SWAGE_INLINE bool any_above_zero(const V& v) {
-    bool any = false;
-    for (int l = 0; l < kWidthOf<V>; ++l) any = any || v[l] > 0;
-    return any;
 }
 
 template <typename N>
@@ -172,7 +159,7 @@ SWAGE_INLINE BackReturn<N> return_with_back(const CellModuli& law, const N& own,
         next = moving > none ? next : d;
         d = next;
         moving = change > close ? moving : none;
-        if (!any_above_zero(moving)) break;
+        if (!is_any(moving > 0.0)) break;
     }
     // Once more, with the slopes of all that has some.
     const V x = rate * d;

@@ -110,14 +110,6 @@ SWAGE_INLINE Columns<N> phase_gradient(const CornerSums<N>& c, const Triple<N>& 
             s * (c.z + at.y * c.yz + at.x * c.zx)};
 }
 
-SWAGE_INLINE bool all_less(double a, double b) { return a < b; }
-template <LaneVector V>
-SWAGE_INLINE bool all_less(const V& a, const V& b) {
-    bool all = true;
-    for (int l = 0; l < kWidthOf<V>; ++l) all = all && a[l] < b[l];
-    return all;
-}
-
 template <typename N>
 SWAGE_INLINE Phase<Dual<N>> constant(const Phase<N>& m) {
     return {m.law, m.kind, constant(m.fill), constant(m.at), constant(m.history)};
@@ -233,7 +225,8 @@ SWAGE_INLINE Columns<N> pick(const M& which, const Columns<N>& a, const Columns<
 
 // `start`: the jump that the search begins with, as jump_in_cell() has it. It is committed as what
 // has flowed is: far past yield W has more than one minimum, and whoever seeks the one that pushes
-// begins there.
+// begins there. NOTE: what is elastic begins with none: crushed, it would go over to another
+// minimum, bear less from then on, and keep some of its strain when let go.
 template <typename N>
 SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const Triple<N>& n,
                            double spacing, Laminate<N>& r, const Triple<N>& start = Triple<N>{}) {
@@ -281,8 +274,8 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
         const N size = dot(pull[0], pull[0]) + dot(pull[1], pull[1]);
         r.wrong = dot(left, left);
         r.right = kTractionLeft * kTractionLeft * size + noise * noise;
-        if (r.rounds == kMostRounds || all_less(r.wrong, r.right)) return;
         const auto arrived = r.wrong < r.right;
+        if (r.rounds == kMostRounds || are_all(arrived)) return;
         const N now = dot(left, way);
         const auto good = arrived | (now <= -kTooFar * steep);
         Columns<N> inverse = r.inverse;

@@ -49,6 +49,13 @@ SWAGE_INLINE N logarithm(const N& x) {
 
 }  // namespace lane_power
 
+// e^y for |y| < 700.
+SWAGE_INLINE double power_of_e(double y) { return lane_power::power_of_e<long long>(y); }
+template <LaneVector V>
+SWAGE_INLINE V power_of_e(const V& y) {
+    return lane_power::power_of_e<typename LaneBatch<kWidthOf<V>>::Indices, V>(y);
+}
+
 // x^e, e one for all lanes.
 SWAGE_INLINE double power(double x, double e) {
     return lane_power::power_of_e<long long>(e * lane_power::logarithm<long long>(x));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 #define SWAGE_INLINE inline __attribute__((always_inline))
 
@@ -57,6 +58,27 @@ SWAGE_INLINE V widened(const F& f) {
 template <LaneVector V>
 SWAGE_INLINE V larger(const V& a, const V& b) {
     return a > b ? a : b;
+}
+template <typename N>
+SWAGE_INLINE N smaller(const N& a, const N& b) {
+    return a < b ? a : b;
+}
+// Of numbers N: bool of a double, one a lane of a batch.
+template <typename N>
+using MaskOf = std::remove_cvref_t<decltype(std::declval<N>() < std::declval<N>())>;
+SWAGE_INLINE bool is_any(bool mask) { return mask; }
+template <LaneVector M>
+SWAGE_INLINE bool is_any(const M& mask) {
+    bool any = false;
+    for (int l = 0; l < kWidthOf<M>; ++l) any = any || mask[l] != 0;
+    return any;
+}
+SWAGE_INLINE bool are_all(bool mask) { return mask; }
+template <LaneVector M>
+SWAGE_INLINE bool are_all(const M& mask) {
+    bool all = true;
+    for (int l = 0; l < kWidthOf<M>; ++l) all = all && mask[l] != 0;
+    return all;
 }
 
 template <typename N>

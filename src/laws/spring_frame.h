@@ -32,26 +32,6 @@ struct SpringLayout {
     std::array<std::array<double, kBendings>, 24> bent;
 };
 
-// Of numbers N: bool of a double, one a lane of a batch.
-template <typename N>
-using MaskOf = std::remove_cvref_t<decltype(std::declval<N>() < std::declval<N>())>;
-SWAGE_INLINE bool is_any(bool mask) { return mask; }
-template <LaneVector M>
-SWAGE_INLINE bool is_any(const M& mask) {
-    bool any = false;
-    for (int l = 0; l < kWidthOf<M>; ++l) any = any || mask[l] != 0;
-    return any;
-}
-template <typename N>
-SWAGE_INLINE N smaller(const N& a, const N& b) {
-    return a < b ? a : b;
-}
-SWAGE_INLINE double power_of_e(double y) { return lane_power::power_of_e<long long>(y); }
-template <LaneVector V>
-SWAGE_INLINE V power_of_e(const V& y) {
-    return lane_power::power_of_e<typename LaneBatch<kWidthOf<V>>::Indices, V>(y);
-}
-
 template <typename N>
 struct CellSprings {
     std::array<Triple<N>, 24> way;  // d n_b, over its reference_length

@@ -79,7 +79,7 @@ struct MixedCell {
     Eigen::Vector3f normal;                   // of the boundary between them, unit
     MixedHistory flowed{};
     // By what the gradient's part along the normal jumps there, committed as what has flowed is: it
-    // is sought from here (laws/laminate.h).
+    // is sought from here (laws/laminate.h). None while nothing has flowed.
     Vec3 jump = Vec3::Zero();
 
     float hardening() const { return std::max(flowed[0].back(), flowed[1].back()); }
