@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // By which law (laws/fracture.h) each cell and connection of a body breaks: that of its material.
 //
-// Of a connection that cells of several materials share, and of a cell through which their boundary
-// runs, each material has its part. The parts of those that break soften together, as the tougher
-// of them; where the connection runs through the boundary, as the weaker, at the stress that both
-// bear there. The part of one that does not break holds on alone, and with it the connection: a bar
-// of steel keeps its outermost connections when the concrete around it has lost its part of them.
+// A connection that cells of several materials share, or that lies in one through which their
+// boundary runs, has of each that breaks a part of stiffness k, and all these soften together: what
+// they bear at their peaks adds up, and what breaking them takes,
+//
+//     s_1 = sum(k s_1m) / sum(k)      s_f = sum(k s_1m s_fm) / sum(k s_1m)      s_0 as s_1
+//
+// Where the connection runs through the boundary both bear the same there: it is of the weaker, as
+// that would be in the whole cell: with give = f E_m / k, f the cell's share of matter, strained by
+// give s_1m when the weaker is at its peak, and broken at s_fm. The part of a material that does
+// not break holds on alone, and with it the connection: a bar of steel keeps its outermost
+// connections when the concrete around it has lost its part of them.
+//
+// NOTE: where that is so much softer than the weaker that s_fm is near give s_1m, or below, the
+// strength is lowered and the toughness kept, as laws/fracture.h does where a spacing cannot
+// resolve the softening: else it would break with more energy in it than breaking takes.
 #pragma once
 
 #include <array>
@@ -34,10 +44,9 @@ class FractureLaws {
 
     // Of what breaks in it, the tougher; onset 0: nothing does.
     const Fracture& of_cell(const Aggregate& matter, CellId cell) const;
-    Fracture of_connection(int direction, ParticleId lower) const {
-        const Part part = part_of(direction, lower);
-        const Fracture& law = law_[part.law];
-        return {part.give * law.onset, part.give * law.peak, law.broken};
+    // Of all that breaks of it; onset 0: nothing does.
+    const Fracture& of_connection(int direction, ParticleId lower) const {
+        return law_[part_of(direction, lower).law];
     }
     // Whether nothing in it holds on.
     bool breaks_wholly(int direction, ParticleId lower) const {
@@ -46,30 +55,30 @@ class FractureLaws {
     // Whether what hangs by any connection can snap.
     bool snap_any() const;
     // The strain at which what hangs by the connection snaps; infinite where it holds on, or
-    // yields below its strength: what flows bends.
+    // some of it yields below its strength: what flows bends.
     double snaps_at(int direction, ParticleId lower) const;
 
   private:
     struct Part {
-        std::uint8_t law = 0;  // number of the material whose it is
-        bool holds = false;    // something that does not break
-        // What the whole connection is strained by over what the part is that breaks: it softens at
-        // its stress, by its energy.
-        float give = 1;
+        std::uint32_t law : 31;
+        std::uint32_t holds : 1;  // something that does not break
     };
     Part part_of(int direction, ParticleId lower) const {
         return part_[0].empty() ? whole_ : part_[direction][lower];
     }
     bool breaks(std::size_t material) const { return law_[material].onset > 0; }
-    Part both(Part one, Part other) const;
-    Part part_in(const Aggregate& matter, CellId cell, const MixedCell* two) const;
-    Part part_in(const MixedCell& two, int direction) const;
+    void find_parts(const Aggregate& matter);
+    // Calls add(material, k, law, whether that is the material's own) of what breaks of a
+    // connection in a cell.
+    template <typename Add>
+    void for_parts(const Aggregate& matter, CellId cell, const MixedCell* two, int direction,
+                   const Add& add) const;
     double give(const MixedCell& two, std::size_t material) const;
 
-    std::vector<Fracture> law_;     // of each material
+    std::vector<Fracture> law_;     // of each material, of nothing, and of what several share
     std::vector<double> snaps_at_;  // likewise
-    std::vector<double> strength_;  // likewise, as the spacing has it [Pa]
-    std::vector<double> modulus_;   // Young's [Pa]
+    std::vector<double> strength_;  // of each material, as the spacing has it [Pa]
+    std::vector<double> modulus_;   // likewise, Young's [Pa]
     double least_onset_ = 0, watched_ = 1;
     MaterialMask breaking_, holding_;
     Part whole_;                                         // of a body of one material

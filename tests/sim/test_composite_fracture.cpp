@@ -102,6 +102,32 @@ TEST_CASE("of two materials in series the weaker parts, at its strength and by i
     }
 }
 
+// Strained alike, they bear at most what each does at its strength, and parting both takes the
+// toughness of each, by its share of the section.
+TEST_CASE("of two brittle materials side by side each keeps its strength and its toughness") {
+    const Material stiff = brittle(20 * kModulus, 5 * kStrength, 1.25 * kToughness);
+    const auto is_layer = [](const Vec3i& site, const Vec3i& count) {
+        return 2 * site.y() == count.y();
+    };
+    constexpr double kShare = 0.25;  // of the stiff one
+    const double both = (1 - kShare) * kStrength + kShare * stiff.strength,
+                 toughness = (1 - kShare) * kToughness + kShare * stiff.toughness;
+    for (const bool core : {false, true}) {
+        Bar bar = core ? Bar(kWeak, stiff, 4, is_core) : Bar(kWeak, stiff, 4, is_layer);
+        const double opening = 2.3 * kToughness / kStrength + 2 * kStrength / kModulus * kLength;
+        double largest = 0;
+        FrameReport r;
+        for (int n = 1; n <= 40; ++n) {
+            r = bar.pull_to(opening * n / 40);
+            largest = std::max(largest, pull(r));
+        }
+        INFO((core ? "core" : "layer"));
+        CHECK(largest / (kSide * kSide) < both);
+        CHECK(largest / (kSide * kSide) > 0.9 * kShare * stiff.strength);
+        CHECK(r.fracture / (kSide * kSide) == Approx(toughness).epsilon(0.3));
+    }
+}
+
 // The shell cracks across at one strain of both; beyond, the core carries by itself between what
 // is still bonded to it.
 TEST_CASE("a core that does not break carries on through the cracks of its shell") {
@@ -166,7 +192,6 @@ TEST_CASE("of what belongs to two materials each has its part") {
     const double a = m.lattice.spacing;
     const Fracture weak = fracture_law(kModulus, kStrength, kToughness, a),
                    strong = fracture_law(2 * kModulus, 4 * kStrength, 8 * kToughness, a);
-    REQUIRE(strong.broken > weak.broken);
     const int middle = m.lattice.cell_count.x() / 2;
     const ParticleId on = m.lattice.cell_row(m.lattice.cell_at(middle, 1, 1))[0];
     const FractureLaws laws(m);
@@ -175,9 +200,31 @@ TEST_CASE("of what belongs to two materials each has its part") {
     CHECK(laws.of_cell(m, 1).onset == weak.onset);
     CHECK(laws.of_connection(0, on).onset == strong.onset);    // along the bar, beyond
     CHECK(laws.of_connection(0, on - 1).onset == weak.onset);  // before
-    CHECK(laws.of_connection(1, on).onset == strong.onset);    // in the boundary
+    // In the boundary, half of both: what they bear adds up, and what breaking them takes.
+    const Fracture shared = laws.of_connection(1, on);
+    CHECK((1 + 2) * shared.onset == Approx(weak.onset + 2 * strong.onset));
+    CHECK((1 + 2) * shared.peak == Approx(weak.peak + 2 * strong.peak));
+    CHECK((1 + 2) * shared.peak * shared.broken ==
+          Approx(weak.peak * weak.broken + 2 * strong.peak * strong.broken));
+    CHECK(laws.snaps_at(1, on) == shared.broken);
     CHECK(laws.breaks_wholly(1, on));
+    // Through the boundary as the weaker would in the whole cell, whatever their stiffness.
+    for (const int d : {0, kEdgeCount}) {
+        const Fracture& across = laws.of_connection(d, m.lattice.cell_row(0)[0]);
+        const double k = stiffness_in(m, 0, &m.mixed_cell[0], d);
+        CHECK(k * across.peak == Approx(weak.peak));
+        CHECK(across.broken == Approx(weak.broken));
+    }
     CHECK(laws.breaking().empty());
+    // What does not break has no say in how the others soften, and holds on.
+    Aggregate three = m;
+    three.inset.push_back(kTough);
+    three.cell_material[three.lattice.cell_at(middle, 1, 1)] = 2;
+    const FractureLaws two_of_three(three);
+    CHECK((2 + 2) * two_of_three.of_connection(1, on).peak ==
+          Approx(2 * weak.peak + 2 * strong.peak));
+    CHECK_FALSE(two_of_three.breaks_wholly(1, on));
+    CHECK(std::isinf(two_of_three.snaps_at(1, on)));
     // Of one that does not break only that of the other softens.
     m.inset[0].strength = m.inset[0].toughness = std::numeric_limits<double>::infinity();
     const FractureLaws held(m);
@@ -249,6 +296,36 @@ TEST_CASE("a layer thinner than a cell breaks by its own strength and toughness"
         CHECK(r.pieces == 2);
         CHECK(r.work / (kSide * kSide) == Approx(kToughness).epsilon(0.15));
     }
+}
+
+// Across it all bear one stress, whatever they are strained by. What its cells hold by then goes
+// when it breaks, even where that is more than its toughness.
+TEST_CASE("a thin layer in matter as stiff or softer keeps its strength and its toughness") {
+    const double ratio = GENERATE(1.0, 0.1, 0.02);
+    const float share = GENERATE(0.2f, 0.6f);
+    const auto nowhere = [](const Vec3i&, const Vec3i&) { return false; };
+    const double modulus = ratio * kModulus;
+    Material weak = kWeak,
+             other = brittle(modulus, std::min(4 * kStrength, 0.099 * modulus), 50 * kToughness);
+    weak.poisson_ratio = other.poisson_ratio = 0;  // neither draws the other in
+    Bar bar(other, weak, 4, nowhere);
+    mix_columns(bar.matter, 6, 7, share);
+    bar.start();
+    const double opening = 2.3 * kToughness / kStrength + 1.5 * kStrength / modulus * kLength;
+    double largest = 0;
+    FrameReport r;
+    for (int n = 1; n <= 40; ++n) {
+        r = bar.pull_to(opening * n / 40);
+        largest = std::max(largest, pull(r));
+    }
+    const double held =
+        kStrength * kStrength * (share / modulus + (1 - share) / kModulus) / 2 * kSide / 4;
+    INFO("modulus " << ratio << ", share of the other " << share);
+    CHECK(largest / (kSide * kSide) < 1.001 * kStrength);
+    CHECK(largest / (kSide * kSide) > 0.9 * kStrength);
+    CHECK(r.pieces == 2);
+    CHECK(r.fracture / (kSide * kSide) > 0.8 * kToughness);
+    CHECK(r.fracture / (kSide * kSide) < 1.2 * std::max(kToughness, held));
 }
 
 TEST_CASE("what has flowed breaks no cell of two materials") {
