@@ -5,7 +5,10 @@
 #include <cmath>
 #include <list>
 
+#include "geometry/box.h"
+#include "sim/body_contact.h"
 #include "sim/free_flight.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
@@ -13,6 +16,37 @@ namespace {
 
 constexpr int kMostLooks = 200;  // each goes at least half of the way that is left
 constexpr double kRounding = 1e-9;
+
+// Whether any press on each other as they stand.
+bool any_press(const std::vector<NamedMatter>& bodies, SimSettings sim) {
+    std::vector<Box> box;
+    for (const NamedMatter& body : bodies) box.push_back(box_of(body.matter->particle_position));
+    std::vector<Aggregate> near;
+    for (std::size_t a = 0; a < box.size(); ++a) {
+        for (std::size_t b = 0; b < box.size(); ++b) {
+            if (a == b || gap_between(box[a], box[b]) > 0) continue;
+            near.push_back(*bodies[a].matter);
+            break;
+        }
+    }
+    if (near.empty()) return false;
+    std::vector<Vec3Array> unused(near.size());
+    std::vector<Aggregate*> matter;
+    std::vector<Vec3Array*> force;
+    for (std::size_t n = 0; n < near.size(); ++n) {
+        set_zero(near[n].particle_count(), unused[n]);
+        matter.push_back(&near[n]);
+        force.push_back(&unused[n]);
+    }
+    sim.self_contact = false;
+    BodyContact contact(matter, sim);
+    const std::vector<char> awake(near.size(), 0);
+    contact.renew(awake);
+    std::vector<ContactSums> sums;
+    contact.add_forces(force, Vec3::Zero(), 0, awake, sums);
+    return std::any_of(sums.begin(), sums.end(),
+                       [](const ContactSums& one) { return one.contacts > 0; });
+}
 
 }  // namespace
 
@@ -31,6 +65,7 @@ double start_flight(const StageSpec& stage, const Machine& machine,
         flying.push_back({&position.emplace_back(matter.particle_position), matter.lattice.spacing,
                           &touch.emplace_back(matter), *velocity});
     }
+    if (any_press(bodies, sim)) return 0;
     const Drive from = drive_at(machine, 0, stage.duration);
     Drive to = from, now = from;
     to.time = stage.duration;

@@ -4,7 +4,8 @@
 //
 //     x += v t + g t^2 / 2,   v += g t.
 //
-// So it may go at once for as long as it can touch nothing.
+// So it may go at once for as long as it can touch nothing. What presses on anything, or sticks to
+// it, does not fly, though nothing has moved yet: whoever asks sees to that (MovingBodies).
 #pragma once
 
 #include <optional>
@@ -48,7 +49,8 @@ struct Flyer {
     Vec3 velocity;              // [m/s]
 };
 
-// How long such bodies fly before any can touch a tool or another, a little less; no longer than
+// How long such bodies, which touch nothing, fly before any can touch a tool or another, a little
+// less; no longer than
 // the leg that they are in has left where a tool moves in it [s]. `now`: of that leg, from one
 // drive to another.
 double free_time(const std::vector<Flyer>& bodies, const Apparatus& apparatus, const Drive& from,

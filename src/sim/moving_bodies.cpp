@@ -121,6 +121,10 @@ std::vector<Flyer> MovingBodies::flyers() {
 
 double MovingBodies::free_time(const Drive& from, const Drive& to, const Drive& now) {
     if (from.gravity_strength != to.gravity_strength) return 0;
+    // What touches, presses or sticks, whether or not it has moved anything yet.
+    for (const ContactSums& sums : by_contact_) {
+        if (sums.contacts > 0) return 0;
+    }
     const std::vector<Flyer> flying = flyers();
     if (flying.empty()) return 0;
     return swage::free_time(flying, apparatus_, from, to, now, body_[0].gravity());

@@ -69,7 +69,7 @@ class MovingBodies {
     int may_be_inside_out(std::size_t body) const { return inside_out_[body]; }
 
     // How long they fly from here, on the way from one drive to another, before any can touch
-    // anything; 0: not all do [s].
+    // anything; 0: not all do, or some touch something or themselves [s].
     double free_time(const Drive& from, const Drive& to, const Drive& now);
     // They fly, and the speeds go on from there by a step of this length [s].
     void fly(const Drive& before, const Drive& now, double step, MoveOutcome& outcome);

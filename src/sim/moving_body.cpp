@@ -182,6 +182,9 @@ double MovingBody::move(double kick, double step) {
 
 std::optional<Vec3> MovingBody::flight_velocity() {
     if (!flies_ || inside_out_ > 0) return std::nullopt;
+    for (const PartSum& tool : load_) {
+        if (tool.contacts > 0) return std::nullopt;  // it may stick to what it does not press on
+    }
     const std::optional<Vec3> velocity = swage::flight_velocity(matter_, step_);
     if (!velocity || holds_strain(matter_, elastic_energy(), step_)) return std::nullopt;
     return velocity;

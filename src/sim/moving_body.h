@@ -53,7 +53,7 @@ class MovingBody {
     // where one is lost [m].
     double move(double kick, double step);
     void kick(double kick) { move(kick, 0); }
-    // Its velocity where it flies (sim/free_flight.h) but for tools and other bodies [m/s].
+    // Its velocity where it flies (sim/free_flight.h) but for what it comes to touch [m/s].
     std::optional<Vec3> flight_velocity();
     const TouchPoints* touch() const { return contacts_.at_rest().pairs().touch(); }
     // Flies from one drive to another at this velocity.

@@ -131,6 +131,18 @@ TEST_CASE("a body that cannot reach the floor in its stage is told how long it w
     CHECK(!says(two("spin = [0, 0, \"9 rad/s\"]\n"), "before it touches"));
 }
 
+TEST_CASE("bodies that press on each other from the start are not told to fly") {
+    const auto flies = [](const std::string& at) {
+        return says(told_of(Bar("[[stage]]\nmachine = \"floor\"\nframes = 2\ndrop = \"2 m\"\n"
+                                "gravity = 9.81\nduration = \"0.3 s\"\n[[body]]\n"
+                                "name = \"other\"\nfile = \"bar.obj\"\nat = [0, \"" +
+                                at + "\", 0]\n")),
+                    "free flight");
+    };
+    CHECK(flies("2.1 cm"));
+    CHECK(!flies("1.95 cm"));
+}
+
 TEST_CASE("loads that lift off what nothing holds are told, and a run says that it is lifted off") {
     const auto bar = [](const std::string& force, const std::string& machine = "shelf",
                         const std::string& gravity = "9.81") {

@@ -175,6 +175,83 @@ TEST_CASE("bodies that are dropped together do not keep each other from flying")
     CHECK(scene.go(0.8).steps == 1);
 }
 
+TEST_CASE(
+    "bodies that press on each other as they fall do not fly, nor does what presses on itself") {
+    for (const bool one : {false, true}) {
+        CAPTURE(one);
+        const double depth = 0.002;
+        const auto make = [&] {
+            Scene scene;
+            const Material soft{.young_modulus = 1e5, .density = 1000, .damping_ratio = 0};
+            if (one) {  // in two parts, far from each other where it was molded
+                scene.settings.self_contact = true;
+                const auto block = [](const Vec3& x, double low) {
+                    return (Vec3(x.x(), x.y() - low - 0.15, x.z()).cwiseAbs() -
+                            Vec3::Constant(0.15))
+                        .maxCoeff();
+                };
+                scene.body.push_back(
+                    make_shape([&](const Vec3& x) { return std::min(block(x, 0), block(x, 1)); },
+                               Vec3(-0.15, 0, -0.15), Vec3i(3, 13, 3), 0.1));
+                Aggregate& m = scene.body[0];
+                m.material = soft;
+                for (std::size_t p = 0; p < m.particle_count(); ++p) {
+                    if (m.particle_reference.at(p).y() > 0.8) {
+                        m.particle_position.add(p, Vec3(0, -0.7 - depth, 0));
+                    }
+                }
+            } else {
+                scene.add_block({}, Vec3::Zero(), soft);
+                scene.add_block({Quat::Identity(), Vec3(0, 0.2 - depth, 0)}, Vec3::Zero(), soft);
+            }
+            return scene;
+        };
+        Scene flies = make(), steps = make();
+        const FrameReport flown = flies.go(0.3), stepped = steps.go(0.3, true);
+        CHECK(stepped.contact_at_start > 0.01);
+        CHECK(stepped.contact < 1e-6 * stepped.contact_at_start);  // they have parted
+        CHECK(flown.steps == stepped.steps);
+        CHECK(flown.contact < 1e-6 * flown.contact_at_start);
+        check_same(flies, steps, 1e-8);
+    }
+}
+
+TEST_CASE("what sticks to another body, or to a tool, is drawn to it and does not fly") {
+    for (const bool to_tool : {false, true}) {
+        CAPTURE(to_tool);
+        Scene scene;
+        scene.settings.gravity = Vec3::Zero();
+        Material sticky{.young_modulus = 1e5, .density = 1000, .damping_ratio = 0};
+        sticky.stickiness = 1e3;
+        const double depth = 1e-4, gap = 1e-3;
+        if (to_tool) {
+            scene.add_floor();
+        } else {
+            scene.add_block({Quat::Identity(), Vec3(0, -0.1, 0)}, Vec3::Zero(), sticky);
+        }
+        const double low = 0.1;
+        scene.add_block({Quat::Identity(), Vec3(0, low - depth, 0)}, Vec3::Zero(), sticky);
+        std::vector<Aggregate*> bodies;
+        for (Aggregate& m : scene.body) bodies.push_back(&m);
+        Simulation simulation(bodies, scene.apparatus, scene.settings);
+        simulation.advance(scene.drive(0, scene.from), scene.drive(1e-4, scene.from));
+        // Apart again, unstrained and at rest, as far as what sticks still holds.
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            const bool is_upper = b + 1 == bodies.size();
+            place(*bodies[b], {Quat::Identity(), Vec3(0, is_upper ? low + gap : -0.1, 0)});
+            for (double* v :
+                 {bodies[b]->particle_velocity.x.data(), bodies[b]->particle_velocity.y.data(),
+                  bodies[b]->particle_velocity.z.data()}) {
+                std::fill_n(v, bodies[b]->particle_count(), 0.0);
+            }
+        }
+        const FrameReport r =
+            simulation.advance(scene.drive(1e-4, scene.from), scene.drive(0.02, scene.from));
+        CHECK(r.steps > 1);
+        CHECK(bodies.back()->centre().y() < low + 0.9 * gap);
+    }
+}
+
 TEST_CASE("what flies meets a tool that comes to it, straight or turning") {
     for (bool turns : {false, true}) {
         CAPTURE(turns);
