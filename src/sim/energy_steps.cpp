@@ -29,13 +29,27 @@ double acceleration_of(const MovingBody& body) {
     return std::sqrt(most);
 }
 
-// How far any of its particles may get while the drive does this: what a tool or a grip strikes
-// leaves it twice as fast.
+// How far any of its particles may get while the drive does this, if no other body strikes it: what
+// a tool or a grip strikes leaves it twice as fast.
 double reach_of(const MovingBody& body, const Drive& from, const Drive& to) {
     const double time = to.time - from.time;
     return body.matter().lattice.spacing + 1.5 * time * body.top_speed() +
            time * time * (acceleration_of(body) + body.push_change(from, to)) +
            2 * body.drive_travel(from, to);
+}
+
+// What it may come to hold while the drive does this, beginning with so much, by itself [J].
+double energy_of(const MovingBody& body, double held, const Drive& from, const Drive& to) {
+    const Aggregate& matter = body.matter();
+    const double time = to.time - from.time, mass = matter.mass();
+    Vec3 pushed = Vec3::Zero();
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        pushed += matter.particle_mass[p] * body.acceleration(p);
+    }
+    const double faster = time * (pushed.norm() / mass + body.push_change(from, to)) +
+                          2 * body.drive_travel(from, to) / time;
+    const double speed = std::sqrt(2 * std::max(held, 0.0) / mass) + faster;
+    return 0.5 * mass * speed * speed;
 }
 
 Vec3Array mean_speed(const Vec3Array& from, const Vec3Array& to, double step) {
@@ -94,27 +108,59 @@ double EnergySteps::connections_changed(std::size_t body, const Drive& now) {
     return let_go;
 }
 
-// Bodies whose boxes may meet within the frame, in the order of their first. What one of a group
-// strikes may go as far as it.
-std::vector<EnergySteps::Group> EnergySteps::groups(const Drive& from, const Drive& to) const {
+// What springs of contacts hold of each body now [J]. Nothing is changed by it.
+std::vector<double> EnergySteps::held_by_contacts() {
+    std::vector<double> held(mover_.size(), 0.0);
+    if (!contact_.acts()) return held;
+    const std::vector<char> awake(mover_.size(), 0);
+    std::vector<Vec3Array> unused;
+    for (Mover& m : mover_) unused.push_back(m.body.force());
+    std::vector<Vec3Array*> force;
+    for (Vec3Array& one : unused) force.push_back(&one);
+    std::vector<ContactSums> sums;
+    const std::shared_ptr<const BodyContact::State> state = contact_.save();
+    contact_.renew_all(awake);
+    contact_.add_forces(force, mover_[0].body.gravity(), 0, awake, sums, Meet::as_kept);
+    contact_.restore(*state);
+    for (std::size_t b = 0; b < held.size(); ++b) held[b] = sums[b].stored;
+    return held;
+}
+
+// Bodies whose boxes may meet within the frame, in the order of their first. Whatever strikes what
+// in a group, none of it goes faster than with all of the group's energy: a light body leaves a
+// heavy one up to twice as fast as that came, and may so throw another, lighter one.
+std::vector<EnergySteps::Group> EnergySteps::groups(const Drive& from, const Drive& to) {
+    const double time = to.time - from.time;
     std::vector<Box> box(mover_.size());
-    std::vector<double> far;  // of the group that begins with it
+    std::vector<double> far, energy = held_by_contacts();  // energy: of the group that begins so
     std::vector<std::size_t> first(mover_.size());
     for (std::size_t b = 0; b < first.size(); ++b) {
-        box[b] = box_of(mover_[b].body.matter().particle_position);
-        far.push_back(reach_of(mover_[b].body, from, to));
+        MovingBody& body = mover_[b].body;
+        box[b] = box_of(body.matter().particle_position);
+        far.push_back(reach_of(body, from, to));
+        energy[b] = energy_of(body, body.stored(from, 0).sum() + energy[b], from, to);
         first[b] = b;
     }
+    const auto all_go_farther = [&](std::size_t group) {
+        for (std::size_t b = 0; b < first.size(); ++b) {
+            if (first[b] != group) continue;
+            const Aggregate& matter = mover_[b].body.matter();
+            const double way = time * std::sqrt(2 * energy[group] / matter.mass());
+            // About its centre a corner may be twice as fast, but goes no farther than across.
+            const double turns = std::min(2 * way, box[b].size().norm());
+            far[b] = std::max(far[b], matter.lattice.spacing + way + turns);
+        }
+    };
     const auto unite_some = [&] {
         bool any = false;
         for (std::size_t a = 0; a < first.size(); ++a) {
             for (std::size_t b = a + 1; b < first.size(); ++b) {
                 const std::size_t low = std::min(first[a], first[b]),
                                   high = std::max(first[a], first[b]);
-                if (low == high || !may_meet(box[a], far[first[a]], box[b], far[first[b]]))
-                    continue;
-                far[low] = std::max(far[low], far[high]);
+                if (low == high || !may_meet(box[a], far[a], box[b], far[b])) continue;
+                energy[low] += energy[high];
                 for (std::size_t& f : first) f = f == high ? low : f;
+                all_go_farther(low);
                 any = true;
             }
         }

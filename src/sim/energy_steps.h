@@ -90,7 +90,8 @@ class EnergySteps {
     };
     using Group = std::vector<std::size_t>;
     struct Try;
-    std::vector<Group> groups(const Drive& from, const Drive& to) const;
+    std::vector<double> held_by_contacts();
+    std::vector<Group> groups(const Drive& from, const Drive& to);
     void advance(const Group& group, const Drive& from, const Drive& to, MoveOutcome& outcome);
     double step_to_try(const Group& group, const Drive& begin, const Drive& to) const;
     double stable_step(const Group& group) const;
