@@ -4,12 +4,19 @@
 #include <algorithm>
 
 #include "base/ascii.h"
+#include "sim/books.h"
 
 namespace swage {
 
 bool is_part_name(const std::string& text) {
     return !text.empty() && begins_name(text[0]) && text.size() <= 64 &&
            std::all_of(text.begin(), text.end(), goes_on_name);
+}
+
+// "load work [J]" and the like are columns of the curves already, whatever parts there are.
+bool is_reserved(const std::string& name) {
+    return std::any_of(kBookEntries.begin(), kBookEntries.end(),
+                       [&](const BookEntry& entry) { return entry.column == name + " work [J]"; });
 }
 
 std::string read_part_name(TableReader& table, std::set<std::string>& names) {
@@ -20,8 +27,7 @@ std::string read_part_name(TableReader& table, std::set<std::string>& names) {
         table.mistake(
             "name",
             fmt::format("\"{}\" must be letters, digits and _, beginning with a letter", name));
-    } else if (name == "gravity" || name == "load" || name == "machine") {
-        // "load work [J]" and the like are columns of the curves.
+    } else if (is_reserved(name)) {
         table.mistake("name", fmt::format("\"{}\" is reserved; choose another name", name));
     } else if (!names.insert(name).second) {
         table.mistake("name", fmt::format("two parts are called \"{}\"", name));

@@ -305,6 +305,9 @@ TEST_CASE("mistakes in machine files are named at their letter") {
         {"what would be a column of the curves twice",
          kHead + "[[grip]]\nname = \"machine\"\nfrom = [0, 0, 0]\nto = [1, 1, \"reach\"]\n",
          {"6:8: \"machine\" is reserved; choose another name"}},
+        {"a tool whose work would be a column of the books",
+         kHead + "[[grip]]\nname = \"friction\"\nfrom = [0, 0, 0]\nto = [1, 1, \"reach\"]\n",
+         {"6:8: \"friction\" is reserved; choose another name"}},
         {"another unit behind a blank",
          kHead + kGrip +
              "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, 0]\nradius = \" 3 N \"\n",
