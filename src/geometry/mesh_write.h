@@ -12,14 +12,21 @@
 
 namespace swage {
 
+// Where a mesh's library of materials (.mtl) would stand, another's may, and it takes another name
+// then; or nothing does but what it was before.
+enum class LibraryPlace { may_be_taken, is_its_own };
+
 // Wavefront OBJ with everything the mesh holds: polygons, parts, materials, texture coordinates,
 // normals by smooth group, colours as "v x y z r g b" (sRGB). Numbers are the shortest that read
 // back to the same double. A part that is closed by itself is an object (o); those that bound
-// something only together are groups (g) of one, which come first. With materials, writes the .mtl
-// of the same name, without blanks, and copies of the textures beside it, so that the folder can be
-// moved. `objects`: others than its parts, which are groups of these then.
+// something only together are groups (g) of one, which come first. With materials, writes a library
+// of these and copies of the textures beside it, so that the folder can be moved. `objects`: others
+// than its parts, which are groups of these then.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh,
-               const MeshObjects& objects = {});
+               const MeshObjects& objects = {}, LibraryPlace place = LibraryPlace::may_be_taken);
+
+// Its library of materials: of the same name, which is one word.
+std::filesystem::path library_of(const std::filesystem::path& obj);
 
 // A number for each vertex of a mesh.
 struct VertexValues {

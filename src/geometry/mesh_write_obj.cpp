@@ -53,9 +53,10 @@ std::vector<std::string> unique_names(const std::vector<std::string>& wanted,
     return names;
 }
 
-// Returns the name of the library beside `file`: the file's own, but one word.
+// Returns the name of the library beside `file`.
 std::string write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& material,
-                      const std::vector<std::string>& name, FilesBeside& beside) {
+                      const std::vector<std::string>& name, LibraryPlace place,
+                      FilesBeside& beside) {
     const std::vector<std::string> image = copy_textures(file, material, beside);
     std::string text;
     for (std::size_t i = 0; i < material.size(); ++i) {
@@ -68,12 +69,14 @@ std::string write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& 
         if (!image[i].empty()) text += "map_Kd " + image[i] + "\n";
         text += "\n";
     }
-    const fs::path library = fs::path(file).replace_extension(".mtl");
-    const std::string own = library.filename().string(), plain = plain_name(own, "material");
+    const fs::path library = library_of(file);
+    const std::string library_name = library.filename().string();
     // Another mesh may be called by that word.
-    if (plain != own) return beside.add(file.parent_path(), plain, text);
+    if (place == LibraryPlace::may_be_taken && library.stem() != file.stem()) {
+        return beside.add(file.parent_path(), library_name, text);
+    }
     beside.write(library, text);
-    return own;
+    return library_name;
 }
 
 // sRGB, of seven digits.
@@ -134,7 +137,13 @@ std::vector<std::size_t> in_order_of_parts(const TriMesh& mesh, const MeshObject
 
 }  // namespace
 
-void write_obj(const fs::path& file, const TriMesh& mesh, const MeshObjects& objects) {
+fs::path library_of(const fs::path& obj) {
+    const fs::path own = fs::path(obj).replace_extension(".mtl");
+    return own.parent_path() / plain_name(own.filename().string(), "material");
+}
+
+void write_obj(const fs::path& file, const TriMesh& mesh, const MeshObjects& objects,
+               LibraryPlace place) {
     check_indices(file, mesh);
     const PolygonCorners polygons = rejoin_polygons(mesh);
     const bool has_uv = !mesh.triangle_uv.empty(), has_normal = !mesh.triangle_smooth.empty();
@@ -146,7 +155,7 @@ void write_obj(const fs::path& file, const TriMesh& mesh, const MeshObjects& obj
     if (!mesh.material.empty()) {
         for (const SurfaceMaterial& m : mesh.material) material_name.push_back(m.name);
         material_name = unique_names(material_name, "material");
-        text.put("mtllib " + write_mtl(file, mesh.material, material_name, beside) + "\n");
+        text.put("mtllib " + write_mtl(file, mesh.material, material_name, place, beside) + "\n");
     }
     for (std::size_t i = 0; i < mesh.position.size(); ++i) {
         text.put("v");

@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "geometry/mesh_write.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/folder_lock.h"
 #include "pipeline/run_record.h"
@@ -61,9 +62,9 @@ void remove_later_products(const fs::path& root, const std::vector<fs::path>& ke
     for (const char* name : {"run.json", "film.mp4", "contact.png", "frames", "again", "usd"}) {
         remove_product(root / name);
     }
-    const auto is_kept = [&](const fs::path& name) {
-        return std::find(kept.begin(), kept.end(), name) != kept.end();
-    };
+    // Libraries of materials have names of their own.
+    std::set<fs::path> stay(kept.begin(), kept.end());
+    for (const fs::path& stem : kept) stay.insert(library_of(fs::path(stem) += ".obj"));
     std::vector<fs::path> others;
     std::error_code error;
     for (const fs::path folder : {"meshes", "curves"}) {
@@ -75,8 +76,9 @@ void remove_later_products(const fs::path& root, const std::vector<fs::path>& ke
             const bool is_of_stage = is_folder || ending == ".obj" || ending == ".mtl" ||
                                      ending == ".ply" || ending == ".csv" || ending == ".svg" ||
                                      ending == ".gp";
-            const fs::path name = is_folder ? it->path().filename() : it->path().stem();
-            if (is_of_stage && !is_kept(folder / name)) {
+            const bool is_whole_name = is_folder || ending == ".mtl";
+            const fs::path name = is_whole_name ? it->path().filename() : it->path().stem();
+            if (is_of_stage && !stay.contains(folder / name)) {
                 others.push_back(it->path());
             }
         }

@@ -33,7 +33,9 @@ void write_meshes(const WorkPiece& body, const std::vector<SkinField>& fields,
     lay_out_cuts(mesh);
     mesh.position = body.position;
     const std::vector<int> piece = skin_pieces(body.skin, body.mount, body.matter);
-    write_obj(fs::path(stem) += ".obj", mesh, objects_of_pieces(mesh, piece, body.label));
+    // The scene has no other of that name (refuse_same_files()).
+    write_obj(fs::path(stem) += ".obj", mesh, objects_of_pieces(mesh, piece, body.label),
+              LibraryPlace::is_its_own);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/suggest.h"
 #include "base/text.h"
+#include "geometry/mesh_write.h"
 #include "scene/document.h"
 #include "scene/idle_keys.h"
 #include "scene/overrides.h"
@@ -118,7 +119,8 @@ void refuse_same_files(TableReader& root, const SceneSpec& scene) {
             std::string what = fmt::format("stage \"{}\"", stage.name);
             if (has_several) what = fmt::format("body \"{}\" of {}", body.name, what);
             const std::string stem = mesh_name(scene, stage, body);
-            std::vector<std::string> files = {stem + ".obj", stem + ".mtl", stem + ".ply"};
+            const std::string mesh = stem + ".obj";
+            std::vector<std::string> files = {mesh, library_of(mesh).string(), stem + ".ply"};
             if (scene.output.meshes_per_frame) files.push_back(stem);
             refuse_same(files, what);
         }

@@ -111,6 +111,11 @@ TEST_CASE("files that an OBJ names have no blanks in their names") {
     const TriMesh read = read_quietly(folder / "out/hammer head.obj");
     CHECK(read.material[0].color == box.material[0].color);
     CHECK(read.material[0].texture.filename() == "my_image.png");
+    // Unless its place is its own, whatever stood there before.
+    CHECK(library_of("out/hammer head.obj") == "out/hammer_head.mtl");
+    write_obj(folder / "out/hammer head.obj", box, {}, LibraryPlace::is_its_own);
+    CHECK(read_quietly(folder / "out/hammer head.obj").material[0].color == box.material[0].color);
+    CHECK(bytes_of(folder / "out/hammer head.obj").starts_with("mtllib hammer_head.mtl\n"));
 }
 
 }  // namespace swage::test

@@ -88,7 +88,24 @@ TEST_CASE("a block is not molded anew, and no two meshes have one name") {
         "\"bend\"\n[[stage]]\nname = \"a.ob\"\nmachine = \"bend\"\n";
     CHECK(mistakes_in(folder.text()) == "");
     folder.rest += "[output]\nmeshes_per_frame = true\n";
+    // Their OBJ and PLY have names of their own.
+    Parts library;
+    library.stage =
+        "[[body]]\nname = \"b 1\"\nfile = \"bar.obj\"\nat = [0, 1, 0]\n"
+        "[[body]]\nname = \"b_1\"\nfile = \"bar.obj\"\nat = [0, 2, 0]\n"
+        "[[stage]]\nname = \"a\"\nmachine = \"floor\"\ngravity = 9.81\n";
+    Parts stages;
+    stages.stage =
+        "[[stage]]\nname = \"a b\"\nmachine = \"bend\"\n"
+        "[[stage]]\nname = \"a#b\"\nmachine = \"bend\"\n";
     check_all({
+        {"library",
+         library,
+         {"body \"b 1\" of stage \"a\" and body \"b_1\" of stage \"a\" would both be written "
+          "as a-b_1.mtl: rename one of them"}},
+        {"library of stages",
+         stages,
+         {"stage \"a b\" and stage \"a#b\" would both be written as a_b.mtl"}},
         {"block", block, {"fills the mesh's box, and stage \"1-bend\" would mold the box"}},
         {"folder",
          folder,
