@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3530'7063'6177'7300;  // "\0swacp05" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3630'7063'6177'7300;  // "\0swacp06" on a little-endian machine
 
 template <typename Io>
 void visit_json(Io& io, Json& json) {
@@ -44,11 +44,11 @@ void visit(Io& io, Head& head) {
 template <typename Io>
 void visit(Io& io, Reached& reached) {
     auto& [stages, bodies, contacts, matter, stage, start_warning, warning, steps, seconds, motion,
-           skin] = reached;
+           skin, foreseen] = reached;
     io(stages, bodies, contacts);
     visit_json(io, matter);
     visit_json(io, stage);
-    io(start_warning, warning, steps, seconds, motion, skin);
+    io(start_warning, warning, steps, seconds, motion, skin, foreseen);
 }
 
 void write_checkpoint(const fs::path& file, const StageKeys& keys, const Reached& reached) {

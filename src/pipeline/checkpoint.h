@@ -26,6 +26,7 @@ struct Reached {
     std::vector<std::pair<std::string, double>> seconds;  // by phase
     MotionMark motion;
     std::vector<int> skin;  // of each body: its number in the motion file
+    std::string foreseen;   // key of the whole run whose stages `start_warning` foresees
 };
 
 // Of a run that has finished so many stages: what made it what it is until then, and which build

@@ -73,6 +73,7 @@ Reached molded(const SimulationContext& context, StartWarnings at_start) {
         for (const std::string& warning : *untold) log_warning("{}", warning);
     }
     reached.start_warning = at_start.all();
+    reached.foreseen = context.directory.stage_keys().back();
     return reached;
 }
 
@@ -138,9 +139,12 @@ class SimulationRun {
     Reached start(StartWarnings at_start) {
         if (!kept_ || !kept_->reached) return molded(context_, std::move(at_start));
         Reached reached = std::move(*kept_->reached);
-        if (context_.directory.is_changed()) {
-            // What is told of the start foresees later stages too.
-            reached.start_warning = molded(context_, std::move(at_start)).start_warning;
+        // What is told of the start foresees later stages too. They may have been changed by a run
+        // that has ended since, and kept nothing of its own.
+        if (reached.foreseen != context_.directory.stage_keys().back()) {
+            Reached anew = molded(context_, std::move(at_start));
+            reached.start_warning = std::move(anew.start_warning);
+            reached.foreseen = std::move(anew.foreseen);
             for (int n = 0; n < reached.stages; ++n) {
                 forget_foreseen(reached.start_warning,
                                 context_.scene.stage[static_cast<std::size_t>(n)]);

@@ -233,6 +233,76 @@ TEST_CASE("a run that is replaced stays whole until the new one is") {
     CHECK_FALSE(fs::exists(replaced));
 }
 
+TEST_CASE("what a changed run that ended early foresees of its stages is told, and no more") {
+    // Before the bar is stretched, each bend wants more of it than there is.
+    const auto bend = [](const char* overhang) {
+        return stage("bend", std::string("angle = \"20 deg\"\nframes = 2\noverhang = \"") +
+                                 overhang + "\"\n");
+    };
+    const std::string stretched = stage("stretch", "strain = 1.5\n" + kFrames);
+    const DoneRun done(kMesh + "[material]\nname = \"rubber\"\n" + kMold,
+                       {stretched, bend("10.5 cm")});
+    const std::string of_new = "overhang = 10.6 cm is out of range";
+    done.put({stretched, stage("twist", "angle = \"40 deg\"\nframes = 400"), bend("10.6 cm")});
+    {
+        RunningSwage running({"run", done.scene.string(), "--no-render", "--out", done.out.string(),
+                              "--go-on", "--keep-every", "0 s"},
+                             done.scratch.path());
+        while (!fs::exists(done.out / "resume/stage.bin") && running.is_running()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        running.signal(SIGKILL);
+        const Outcome outcome = running.wait();
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 128 + SIGKILL);
+        CHECK(says(outcome, of_new));
+    }
+    const Outcome outcome = done.go_on({});
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(says(outcome, "in stage 2 of 3"));
+    CHECK(says(outcome, of_new));
+    CHECK(bytes_of(done.out / "run.json").find("is out of range") == std::string::npos);
+    done.check();
+}
+
+TEST_CASE("meshes of stages that are kept have their materials, however they are called") {
+    const auto called = [](const char* name, const std::string& of) {
+        std::string text = of;
+        return text.insert(text.find('\n') + 1, std::string("name = \"") + name + "\"\n");
+    };
+    const Stages stages = {called("my first", kAtRest[0]), called("my # cut", kAtRest[1]),
+                           kAtRest[2]};
+    const DoneRun done(kMesh + metal(""), stages);
+    CHECK(fs::exists(done.out / "meshes/my_first.mtl"));
+    done.put({stages[0], stages[1], kAtRestToo[2]});
+    CHECK(done.go_on().code == 0);
+    done.check();
+}
+
+TEST_CASE("a stage that ended early leaves no materials beside those of its end") {
+    const Scratch scratch;
+    const fs::path out = scratch.path() / "run", meshes = out / "meshes";
+    const fs::path scene = put_scene(
+        scratch.path(), kMesh + metal("") + stage("cut", "name = \"my cut\"\nframes = 400"));
+    {
+        RunningSwage running(
+            {"run", scene.string(), "--no-render", "--out", out.string(), "--keep-every", "0 s"},
+            scratch.path());
+        while (!fs::exists(out / "resume/stage.bin") && running.is_running()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        running.signal(SIGINT);
+        REQUIRE(running.wait().code == 128 + SIGINT);
+    }
+    // Nothing is cut yet, and so nothing has a colour of its own inside.
+    REQUIRE(bytes_of(meshes / "my_cut.mtl").find("cut") == std::string::npos);
+    const Outcome outcome = run(scene, out);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    check_as_from_nothing(scene, out, scratch.path());
+}
+
 TEST_CASE("a run that is asked to be fresh throws away what it replaced, too") {
     const DoneRun done(kMesh + metal(""), {kAtRest[0], kAtRest[2]});
     done.put({kAtRest[0], stage("bend", "radius = \"1 um\"\n")});

@@ -103,6 +103,7 @@ Reached reached_with(std::vector<WorkPiece> bodies) {
     reached.steps = 12345678901;
     reached.seconds = {{"mold", 0.5}};
     reached.motion = {1234, 5678};
+    reached.foreseen = "more";
     reached.skin.assign(reached.bodies.size(), 3);
     return reached;
 }
@@ -133,6 +134,7 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
     CHECK(read->motion.size == 1234);
     CHECK(read->motion.hash == 5678);
     CHECK(read->skin == reached.skin);
+    CHECK(read->foreseen == "more");
     REQUIRE(read->bodies.size() == 3);
     CHECK(state_hash(read->bodies) == state_hash(reached.bodies));
     for (std::size_t b = 0; b < 3; ++b) {
