@@ -160,9 +160,10 @@ RunNames run_names_of(const Json& record) {
         }
         if (!stages.empty()) {
             const Json pieces = stages.back().value("skin_pieces", Json::object());
+            // They are told of the meshes that it left.
+            const int last = stages.back().value("unfinished_frame", names.stage.back().last);
             for (const std::string& body : names.body) {
-                names.piece.push_back(
-                    {stages.back().at("frames").at(1), pieces.value(body, std::vector<int>())});
+                names.piece.push_back({last, pieces.value(body, std::vector<int>())});
             }
         }
     } catch (const Json::exception&) {

@@ -32,6 +32,7 @@
 #include "pipeline/warning_book.h"
 #include "scene/product_names.h"
 #include "sim/advance.h"
+#include "sim/given_up.h"
 #include "sim/sever.h"
 #include "skin/cut_mesh.h"
 
@@ -134,9 +135,7 @@ class StageRun {
     }
 
     void write_products() {
-        // Where memory ran out, matter may stand in the middle of a step.
-        const bool is_whole = !outcome_.stopped || outcome_.stopped->code() != ExitCode::resources;
-        for (std::size_t b = 0; is_whole && b < bodies_.size(); ++b) {
+        for (std::size_t b = 0; is_whole() && b < bodies_.size(); ++b) {
             keep([&] { meshes_.write_end(b, bodies_[b]); });
         }
         const fs::path folder = context_.root / "curves";
@@ -154,6 +153,10 @@ class StageRun {
         }
     }
 
+    // Where memory ran out, matter may stand in the middle of a step.
+    bool is_whole() const {
+        return !outcome_.stopped || outcome_.stopped->code() != ExitCode::resources;
+    }
     std::vector<ProbePlace> probes() const { return probe_places(context_.scene.body, bodies_); }
     std::vector<SkinFieldValues> fields_now() const {
         return fields_on_skins(bodies_, context_.scene.output.fields);
@@ -188,6 +191,8 @@ class StageRun {
     void begin_books(const Simulation& simulation) {
         const Apparatus& apparatus = machine_.apparatus;
         first_ = simulation.start();
+        last_ = first_;  // until a leg is done
+        last_.contact = 0;
         curves_.emplace(stage_.name, before_, simulation.loads(way_.now()), first_,
                         apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size(),
                         turn_axes(machine_), probes());
@@ -227,8 +232,9 @@ class StageRun {
 
     bool cuts_any() const { return !machine_.apparatus.blade.empty(); }
 
-    // The machine goes through the n-th frame; false where that was given up. What legs of it were
-    // done is on the books and in the skins either way.
+    // The machine goes through the n-th frame; false where that was given up. What was done of it,
+    // to where the matter was last at rest or its steps were last right, is on the books and in
+    // the skins either way.
     bool work(Simulation& simulation, int n, int number) {
         int legs = 0;
         FrameReport frame;
@@ -253,13 +259,27 @@ class StageRun {
             }
         } catch (const Interrupted& interrupted) {
             outcome_.interrupted = interrupted;
+        } catch (const GivenUp& given_up) {
+            // A leg as far as it came.
+            if (given_up.report().severed > 0) hold_skins();
+            frame.go_on(given_up.report());
+            ++legs;
+            give_up(given_up, number);
         } catch (const std::exception& error) {
-            const Error failure = failure_that_stops(ExitCode::stopped, error);
-            outcome_.stopped.emplace(failure.code(), fmt::format("{}, frame {}: {}", stage_.name,
-                                                                 number, failure.what()));
+            give_up(failure_that_stops(ExitCode::stopped, error), number);
         }
-        if (legs > 0) book(number, std::move(frame));
-        return !outcome_.interrupted && !outcome_.stopped;
+        const bool goes_on = !outcome_.interrupted && !outcome_.stopped;
+        if (legs > 0) {
+            book(number, std::move(frame));
+        } else if (!goes_on && is_whole()) {
+            dress(number);  // it may have moved all the same
+        }
+        return goes_on;
+    }
+
+    void give_up(const Error& why, int number) {
+        outcome_.stopped.emplace(why.code(),
+                                 fmt::format("{}, frame {}: {}", stage_.name, number, why.what()));
     }
 
     // What the matter has gone through is on the books, whether the frame can be kept or not.
@@ -347,6 +367,8 @@ class StageRun {
         context_.progress.advance(number - 1, stage_.name);
     }
 
+    int last_row() const { return before_ + static_cast<int>(curves_->rows()) - 1; }
+
     void finish() {
         const StageEnd end{.stage = stage_,
                            .machine = machine_,
@@ -355,7 +377,7 @@ class StageRun {
                            .first = first_,
                            .last = last_,
                            .first_frame = before_ + 1,
-                           .last_frame = before_ + static_cast<int>(curves_->rows()) - 1,
+                           .last_frame = std::min(last_row(), context_.recorder.frame_count()),
                            .legs = way_.legs(),
                            .connections_before = connections_before_,
                            .volumes_before = volumes_before_,
@@ -379,6 +401,8 @@ class StageRun {
         outcome_.record = stage_record(end, *curves_, verdict.overlap, outcome_.warning);
         limits_.add_to(outcome_.record);
         outcome_.record["use"] = use_.json(bodies_);
+        // Its row and the meshes are of the way to it.
+        if (last_row() > end.last_frame) outcome_.record["unfinished_frame"] = last_row();
         outcome_.record["state"] = ended == StageEnded::interrupted ? RunState::interrupted
                                    : ended == StageEnded::stopped   ? RunState::stopped
                                                                     : RunState::complete;

@@ -16,6 +16,7 @@
 #include "sim/cell_flow.h"
 #include "sim/crumbs.h"
 #include "sim/energy_steps.h"
+#include "sim/given_up.h"
 #include "sim/lattice_forces.h"
 #include "sim/move_warnings.h"
 #include "sim/quasistatic.h"
@@ -297,6 +298,8 @@ FrameReport Simulation::start() const {
                 0.5 * matter.particle_mass[p] * matter.particle_velocity.at(p).squaredNorm();
         }
         books.elastic = rooms_->elastic(b);
+        books.kinetic_at_start = books.kinetic;
+        books.elastic_at_start = books.elastic;
         report.pieces += rooms_->body[b].pieces;
         report.body.push_back(books);
         report.add(books);
@@ -337,8 +340,8 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveA
             }
         },
         r.solver);
-    report.stop = std::move(outcome.stop);
-    const Drive& end = report.stop ? report.stop->at : to;
+    const Drive& end = outcome.end(to);
+    report.stop = outcome.stop;
     report.time = end.time;
 
     report.pieces = 0;
@@ -382,6 +385,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveA
             load.contacts = static_cast<int>(r.apparatus.load[n].point.size());
         }
     }
+    if (outcome.given_up) throw GivenUp(outcome.given_up->why, std::move(report));
     return report;
 }
 

@@ -256,9 +256,10 @@ void BlockSolver::keep(const Block& block, MoveOutcome& outcome) {
     }
 }
 
-// Goes back to the block's start and chooses shorter or other steps; throws where none are left.
-void BlockSolver::take_back(const Block& block, const Finding& found,
-                            const std::vector<BodyOutcome>& so_far, MoveOutcome& outcome) {
+// Goes back to the block's start and chooses shorter or other steps; where none are left it says
+// why.
+std::string BlockSolver::take_back(const Block& block, const Finding& found,
+                                   const std::vector<BodyOutcome>& so_far, MoveOutcome& outcome) {
     ++halvings_;
     ++outcome.halvings;
     outcome.rejected += found.step - steps_;
@@ -270,7 +271,7 @@ void BlockSolver::take_back(const Block& block, const Finding& found,
         why = sentence_of(found, bodies_[found.body], apparatus_.name, block.dt, settings_.solver);
     }
     bodies_.restore(block.begin, first_step(block.dt), so_far, outcome);
-    if (!why.empty()) fail(ExitCode::stopped, "{}", why);
+    if (!why.empty()) return why;
     share_ *= 0.5;
     good_blocks_ = 0;
     if (rescue) {
@@ -278,6 +279,7 @@ void BlockSolver::take_back(const Block& block, const Finding& found,
         rescued_blocks_ = kRescue;
         halvings_ = 0;
     }
+    return {};
 }
 
 MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
@@ -311,12 +313,17 @@ MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
         }
         goes_on = !found;
         if (found) {
-            take_back(block, found, so_far, outcome);
-        } else {
-            keep(block, outcome);
-            bodies_.put_to_sleep(now, outcome);
-            begin = now;
+            const std::string why = take_back(block, found, so_far, outcome);
+            if (why.empty()) continue;
+            outcome.given_up = {Error(ExitCode::stopped, why), begin};
+            const std::vector<Stored> kept = bodies_.stored(begin, lag);
+            if (begin.time == from.time) start_books(kept, true, outcome);
+            for (std::size_t b = 0; b < bodies_.size(); ++b) outcome.body[b].after = kept[b];
+            break;
         }
+        keep(block, outcome);
+        bodies_.put_to_sleep(now, outcome);
+        begin = now;
     }
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         outcome.body[b].part = bodies_[b].load();

@@ -25,6 +25,7 @@
 // pass on to it too, where it can move the body.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -42,8 +43,8 @@ class BlockSolver {
     BlockSolver(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                 const SimSettings& settings);
 
-    // Throws Error(stopped) when the guard finds something wrong even in the shortest steps; the
-    // matter is then as it was at the last block that was right.
+    // Is given up when the guard finds something wrong even in the shortest steps; the matter is
+    // then as it was at the last block that was right.
     MoveOutcome advance(const Drive& from, const Drive& to);
     // A blade has severed connections of this body. Returns what contacts with tools and grips held
     // by what is gone [J]; with other bodies that counts as damped in the next move.
@@ -89,8 +90,8 @@ class BlockSolver {
                       const std::vector<Stored>& after, const std::vector<BodyOutcome>& so_far,
                       const std::vector<BodyOutcome>& now);
     void keep(const Block& block, MoveOutcome& outcome);
-    void take_back(const Block& block, const Finding& found, const std::vector<BodyOutcome>& so_far,
-                   MoveOutcome& outcome);
+    std::string take_back(const Block& block, const Finding& found,
+                          const std::vector<BodyOutcome>& so_far, MoveOutcome& outcome);
     bool can_be_rescued() const;
 
     const Apparatus& apparatus_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "matter/drive.h"
 #include "sim/contact_sums.h"
 #include "sim/part_sum.h"
@@ -64,6 +65,12 @@ struct BodyOutcome {
     }
 };
 
+// Why a move was given up, and where the matter has got to.
+struct MoveEnd {
+    Error why;
+    Drive at;
+};
+
 struct MoveOutcome : StepCounts {
     std::vector<BodyOutcome> body;
     int asleep = 0;               // bodies at rest at the end; in motion only
@@ -76,6 +83,12 @@ struct MoveOutcome : StepCounts {
     std::vector<std::string> lost;     // tools that the work-piece has slipped away from
     std::vector<std::string> pierced;  // tools that points of it have gone through
     std::optional<LimitStop> stop;     // the move ended there, for a limit
+    std::optional<MoveEnd> given_up;   // or there, for want of any way on
+
+    // Where it ended on its way to there.
+    const Drive& end(const Drive& to) const {
+        return stop ? stop->at : given_up ? given_up->at : to;
+    }
 };
 
 // Work [J] that each tool and grip did while its pose went from one to another under these loads

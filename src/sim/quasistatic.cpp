@@ -75,9 +75,21 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to, const
     forces_.pushes.start(matter_, from);
     seats_ = true;
     way_ = way ? &way : nullptr;
-    if (is_limited()) stands_ = from;
+    stands_ = from;
+    try {
+        go(from, to, outcome);
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::stopped) throw;
+        outcome.given_up = {error, stands_};
+    }
+    body.part = load_;
+    body.after = forces_.stored(outcome.end(to));
+    return outcome;
+}
+
+void QuasistaticSolver::go(const Drive& from, const Drive& to, MoveOutcome& outcome) {
     const bool begins = !begun_, severed = std::exchange(severed_, false);
-    const bool let_go_of = begin(from, body) || severed;
+    const bool let_go_of = begin(from, outcome.body[0]) || severed;
     forces_.measure.ask(
         std::max(forces_.pushes.size(matter_, from), forces_.pushes.size(matter_, to)));
     const int count = increments_between(forces_.contacts, matter_, from, to);
@@ -100,9 +112,6 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to, const
         }
         before = after;
     }
-    body.part = load_;
-    body.after = forces_.stored(outcome.stop ? outcome.stop->at : to);
-    return outcome;
 }
 
 bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
@@ -247,7 +256,7 @@ void QuasistaticSolver::keep(const StaticMove& move, bool buckled, MoveOutcome& 
     // None of these goes on as it did.
     if (buckled || breaks || move.seated > kSeated * matter_.lattice.spacing) foresight_.forget();
     ++outcome.increments;
-    if (is_limited()) stands_ = move.to;
+    stands_ = move.to;
 }
 
 bool QuasistaticSolver::commit(BodyOutcome& outcome) {

@@ -26,8 +26,8 @@ class QuasistaticSolver {
   public:
     QuasistaticSolver(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
 
-    // Throws Error(stopped) when an increment fails at the deepest halving; the matter is then as
-    // it was before that increment.
+    // Is given up when an increment fails at the deepest halving; the matter is then as it was
+    // before that increment.
     MoveOutcome advance(const Drive& from, const Drive& to, const DriveAt& way = {});
 
     // A blade has severed connections. Returns what contacts and grips held by what is gone [J].
@@ -43,6 +43,7 @@ class QuasistaticSolver {
     }
 
   private:
+    void go(const Drive& from, const Drive& to, MoveOutcome& outcome);
     enum class Unsolved { stop, leave };
     // Whether there is an equilibrium at `to` within the limits; without one the matter stays as it
     // was, or it stops; beyond a limit it stays where it has got to.
@@ -96,10 +97,10 @@ class QuasistaticSolver {
     bool begun_ = false;
     bool severed_ = false;  // by a blade, since the last equilibrium
 
-    // Where there are limits: the drives between those of a move, where the matter stands, and the
-    // last try that went beyond.
+    Drive stands_;  // where the matter was last at rest
+    // Where there are limits: the drives between those of a move, and the last try that went
+    // beyond.
     const DriveAt* way_ = nullptr;
-    Drive stands_;
     struct Beyond {
         Drive at;
         Reach reach;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the quasi-static solver does when matter breaks, is cut or is let go.
 
+#include "base/error.h"
 #include "sim/quasistatic.h"
 
 namespace swage {
@@ -37,8 +38,14 @@ void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
         slips_.forget();
         body.fracture_work += cracked.lost + snapped.fracture;
         body.broken += snapped.broken;
-        increment(to, to, settings_.halving_limit, outcome);
-        body.set_free = before - booked(to, body);
+        const auto book = [&] { body.set_free = before - booked(to, body); };
+        try {
+            increment(to, to, settings_.halving_limit, outcome);
+        } catch (const Error&) {
+            book();
+            throw;
+        }
+        book();
     }
 }
 

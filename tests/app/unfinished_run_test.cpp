@@ -2,7 +2,15 @@
 // Runs that cannot begin, or end early: what is left of them.
 #include <sys/resource.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <sstream>
 
 #include "tests/app/program.h"
 #include "tests/catch.h"
@@ -143,10 +151,109 @@ TEST_CASE(
     CHECK(parse_json(outcome.out) == record);
     const Json& stage = record.at("stages").at(0);
     CHECK(stage.at("state") == "stopped");
-    CHECK(stage.at("frames") == Json({2, 2}));
+    CHECK(stage.at("frames") == Json({2, 1}));  // none is there
+    CHECK(stage.at("unfinished_frame") == 2);
+    CHECK(run_swage({"info", run.string()}).out.find("no frame is finished") != std::string::npos);
     CHECK(stage.at("increments") > 0);
     CHECK(stage.at("energies_J").at("machine_work") > 0);
     CHECK(bytes_of(run / "curves/1-twist.csv").find("\n2,") != std::string::npos);
+}
+
+namespace {
+
+// By the names of its columns.
+std::map<std::string, double> last_row(const fs::path& table) {
+    std::istringstream lines(bytes_of(table));
+    std::string names, line, last;
+    std::getline(lines, names);
+    while (std::getline(lines, line)) last = line;
+    std::istringstream name(names), cell(last);
+    std::map<std::string, double> row;
+    for (std::string key, value; std::getline(name, key, ',') && std::getline(cell, value, ',');) {
+        CHECK(row.emplace(key, std::atof(value.c_str())).second);
+    }
+    return row;
+}
+
+// Of the nearest vertex of an OBJ.
+double distance_to_mesh(const fs::path& file, const std::array<double, 3>& place) {
+    std::istringstream lines(bytes_of(file));
+    double least = 1e9;
+    for (std::string line; std::getline(lines, line);) {
+        double x = 0, y = 0, z = 0;
+        if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3) continue;
+        least = std::min(least, std::hypot(x - place[0], y - place[1], z - place[2]));
+    }
+    return least;
+}
+
+constexpr const char* kTip = "[[probe]]\nname = \"tip\"\nat = [1, 1, 1]\n";
+
+}  // namespace
+
+TEST_CASE("of a stage that stops all is told of one time, its first frame too") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml", run = scratch.path() / "run";
+    run_swage({"make", "bar", "--length", "20 cm", "--out", "bar.obj"}, scratch.path());
+    // More than it can bear: in the first frame, in a later one, and before there is any rest.
+    const auto& [frames, strength] =
+        GENERATE(table<int, std::string>({{1, "t"}, {4, "t"}, {1, "1"}}));
+    put_text(scene, std::string("[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"lead\"\n") +
+                        "[mold]\nacross = 2\n" + kTip +
+                        "[[stage]]\nmachine = \"twist\"\nangle = \"20 deg\"\nframes = 2\n"
+                        "[[stage]]\nmachine = \"hold\"\niteration_limit = 500\nframes = " +
+                        std::to_string(frames) + "\n[[stage.load]]\non = \"right\"\n" +
+                        "force = [0, \"-20 kN\", 0]\nstrength = \"" + strength + "\"\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 6);
+    auto row = last_row(run / "curves/2-hold.csv");
+    const Json record = parse_json(bytes_of(run / "run.json")), stage = record.at("stages").at(1);
+    CHECK(record.at("frames") == stage.at("frames").at(1));
+    CHECK(stage.at("unfinished_frame") == record.at("frames").get<int>() + 1);
+    CHECK(row["frame"] == stage.at("unfinished_frame").get<int>());
+    const bool has_rested = strength == "t";
+    const std::string at_rest = fmt::format("at rest at {:.4g} s under {:.6g} kN", row["time [s]"],
+                                            -1e-3 * row["load_1 force y [N]"]);
+    CHECK(outcome.err.find(at_rest) != std::string::npos);
+    CHECK((row["time [s]"] > 0) == has_rested);
+    const Json& books = stage.at("energies_J");
+    CHECK(books.at("elastic").get<double>() == Approx(row["elastic energy [J]"]));
+    CHECK(books.at("elastic").get<double>() > 0);
+    CHECK(books.at("elastic_at_start").get<double>() > 0);
+    CHECK((books.at("load_work").get<double>() > 0) == has_rested);
+    CHECK(stage.at("energies_by_body_J").size() == 1);
+    CHECK(stage.at("iterations").get<int>() > 500);
+    // Its corner lies where its mesh has it.
+    CHECK(distance_to_mesh(run / "meshes/2-hold.obj",
+                           {row["tip x [m]"], row["tip y [m]"], row["tip z [m]"]}) < 2e-3);
+}
+
+TEST_CASE("what a stage did in motion before it stopped is told, of its first frame too") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml", run = scratch.path() / "run";
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    put_text(scene, std::string("[mesh]\nfile = \"bar.obj\"\nvelocity = [0, \"-60 m/s\", 0]\n") +
+                        "[material]\nname = \"glass\"\n[mold]\nacross = 2\n" + kTip +
+                        "[[stage]]\nmachine = \"floor\"\ndrop = \"1 cm\"\nduration = \"2 ms\"\n"
+                        "gravity = 9.81\nframes = 2\nretry_limit = 0\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 6);
+    auto row = last_row(run / "curves/1-floor.csv");
+    const Json stage = parse_json(bytes_of(run / "run.json")).at("stages").at(0);
+    CHECK(stage.at("frames") == Json({2, 1}));
+    CHECK(stage.at("unfinished_frame") == 2);
+    CHECK(row["frame"] == 2);
+    CHECK(row["time [s]"] > 0);
+    CHECK(stage.at("steps").get<int>() > 0);
+    CHECK(stage.at("energies_by_body_J").size() == 1);
+    CHECK(stage.at("energies_J").at("kinetic_at_start").get<double>() > 0);
+    // It has gone 1 cm down since it began.
+    CHECK(distance_to_mesh(run / "meshes/1-floor.obj",
+                           {row["tip x [m]"], row["tip y [m]"], row["tip z [m]"]}) < 2e-3);
 }
 
 TEST_CASE("a fresh run that cannot start leaves the run that was there, one that can replaces it") {

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "sim/cell_volume.h"
+#include "sim/given_up.h"
 #include "sim/quasistatic.h"
 #include "tests/catch.h"
 #include "tests/sim/loads_fixture.h"
@@ -284,6 +285,43 @@ TEST_CASE("what cannot converge stops with a sentence and leaves the matter as i
         CHECK(std::string(error.what()).find("tolerance") != std::string::npos);
     }
     CHECK(state_hash(bar) == before);
+}
+
+TEST_CASE("a move that is given up on its way is told of to where the matter was last at rest") {
+    const Material flowing{.young_modulus = 1e7, .yield_stress = 1e5};
+    Aggregate bar = make_block(8, 2, 2, 0.05, flowing);
+    const auto end = [&](int side) {
+        return points_where(bar, [&](const Vec3& x) { return side * x.x() > 0.19; });
+    };
+    Apparatus apparatus;
+    apparatus.name = "pull";
+    apparatus.grip.push_back(hold(bar, end(-1)));
+    constexpr double kForce = 2000;  // twice what it can bear
+    apparatus.load.push_back(force_on(bar, end(1), {kForce, 0, 0}));
+    SimSettings settings;
+    settings.iteration_limit = 1000;
+    Simulation simulation(bar, apparatus, settings);
+    try {
+        simulation.advance(drive_of(apparatus, 0, 0), drive_of(apparatus, 1, 1));
+        FAIL("it should flow");
+    } catch (const GivenUp& given_up) {
+        CHECK(given_up.code() == ExitCode::stopped);
+        const FrameReport& r = given_up.report();
+        INFO(given_up.what());
+        CHECK(r.time > 0.2);
+        CHECK(r.time < 0.6);
+        CHECK(std::string(given_up.what()).find(fmt::format("rest at {:.4g} s", r.time)) !=
+              std::string::npos);
+        CHECK(r.load.back().force.x() == Approx(kForce * r.time));
+        CHECK(r.load.back().work > 0);
+        CHECK(r.load.back().work == r.load_work);
+        CHECK(r.elastic == Approx(Simulation(bar, apparatus, settings).start().elastic));
+        CHECK(std::abs(r.remainder) < 0.02 * r.load_work);
+        CHECK(r.increments > 0);
+        CHECK(r.iterations > settings.iteration_limit);
+        CHECK(r.body.size() == 1);
+        CHECK(r.pieces == 1);
+    }
 }
 
 TEST_CASE("bending gives the same bits at any thread count") {
