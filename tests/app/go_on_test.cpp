@@ -243,7 +243,7 @@ TEST_CASE("what a changed run that ended early foresees of its stages is told, a
     const DoneRun done(kMesh + "[material]\nname = \"rubber\"\n" + kMold,
                        {stretched, bend("10.5 cm")});
     const std::string of_new = "overhang = 10.6 cm is out of range";
-    done.put({stretched, stage("twist", "angle = \"40 deg\"\nframes = 400"), bend("10.6 cm")});
+    done.put({stretched, stage("twist", "angle = \"40 deg\"\nframes = 1600"), bend("10.6 cm")});
     {
         RunningSwage running({"run", done.scene.string(), "--no-render", "--out", done.out.string(),
                               "--go-on", "--keep-every", "0 s"},
@@ -284,7 +284,7 @@ TEST_CASE("a stage that ended early leaves no materials beside those of its end"
     const Scratch scratch;
     const fs::path out = scratch.path() / "run", meshes = out / "meshes";
     const fs::path scene = put_scene(
-        scratch.path(), kMesh + metal("") + stage("cut", "name = \"my cut\"\nframes = 400"));
+        scratch.path(), kMesh + metal("") + stage("cut", "name = \"my cut\"\nframes = 1600"));
     {
         RunningSwage running(
             {"run", scene.string(), "--no-render", "--out", out.string(), "--keep-every", "0 s"},
