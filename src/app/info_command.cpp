@@ -91,9 +91,7 @@ std::string run_text(const std::string& folder, const Json& record) {
                                            : fmt::format("frames {} to {}", first, last)));
         for (const std::string& use : use_texts(stage)) lines.add(use);
     }
-    for (const Json& warning : record.value("warnings", Json::array())) {
-        lines.add("warning", warning.get<std::string>());
-    }
+    for (const std::string& warning : warnings_in(record)) lines.add("warning", warning);
     return lines.text();
 }
 

@@ -36,13 +36,24 @@ RunOptions options_of(const RunArguments& given, const SceneSpec& scene) {
     return options;
 }
 
+// Wherever the run is repeated from, it says the same.
+std::string text_for_record(Mistake warning) {
+    warning.warning = false;
+    if (warning.line > 0) warning.file = warning.file.filename();
+    return mistake_text(warning);
+}
+
 int run(const RunArguments& given) {
     const SceneReading reading = read_scene_argument(given.scene);
     log_mistakes(reading.mistakes);
     Json record;
     try {
         const SceneSpec& scene = scene_of(reading, given.scene);
-        record = run_scene(scene, options_of(given, scene));
+        RunOptions options = options_of(given, scene);
+        for (const Mistake& one : reading.mistakes) {
+            if (one.warning) options.warnings.push_back(text_for_record(one));
+        }
+        record = run_scene(scene, options);
     } catch (const StoppedRun& stopped) {
         if (given.json) put_json(stopped.record);
         throw;

@@ -38,6 +38,7 @@ enum class EarlierRun {
 struct RunOptions {
     std::filesystem::path out;           // the run directory
     std::vector<std::string> overrides;  // "key=value" as given; part of what makes the run
+    std::vector<std::string> warnings{}; // of the reading of the scene, for the record
     std::optional<FrameRange> frames;    // draw only these; none: all
     bool draw = true;                    // false: no picture, and nothing of OpenGL is touched
     EarlierRun earlier = EarlierRun::finish;

@@ -105,6 +105,7 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
     record["state"] = RunState::begun;
     record["scene"] = (scene.piped ? scene.file.filename() : scene.file).string();
     record["overrides"] = options.overrides;
+    record["warnings"] = options.warnings;
     for (const RunInput& one : identity.input) {
         record["inputs"].push_back(
             {{"role", one.role}, {"file", one.file.string()}, {"hash", one.hash}});
@@ -119,6 +120,16 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
     }
     record["render"] = render_json(scene.render);
     return record;
+}
+
+std::vector<std::string> warnings_in(const Json& record) {
+    std::vector<std::string> all;
+    const auto add = [&](const Json& of) {
+        for (const Json& one : of.value("warnings", Json::array())) all.push_back(one);
+    };
+    add(record);
+    for (const char* part : {"plots", "drawing"}) add(record.value(part, Json::object()));
+    return all;
 }
 
 void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch) {

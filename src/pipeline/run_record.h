@@ -33,6 +33,10 @@ Json matter_json(const Aggregate& matter);
 Json drawing_json(const DrawOutcome& drawing);
 Json seconds_json(const Stopwatch& watch);
 
+// What it warns of in all of its lists: of the scene and the stages, of plots, of pictures. Throws
+// Json::exception where it is damaged.
+std::vector<std::string> warnings_in(const Json& record);
+
 // Writes it as it is, with the seconds spent; what is drawn later leaves what the simulation took.
 void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch);
 

@@ -279,7 +279,8 @@ class SimulationRun {
         } catch (const std::exception& error) {
             const std::optional<Error> failure = failure_of(error);
             if (!failure) throw;
-            log_warning("{}; no run can go on from here", failure->what());
+            unkept_.push_back(fmt::format("{}; no run can go on from here", failure->what()));
+            log_warning("{}", unkept_.back());
             return false;
         }
     }
@@ -311,10 +312,14 @@ class SimulationRun {
         record["frames"] = recorder_.frame_count();
         record["steps"] = reached_.steps;
         record["state_hash"] = hash_text(state_hash(reached_.bodies));
-        Json& told = record["warnings"] = Json::array();
-        for (const auto* all : {&reached_.start_warning, &reached_.warning}) {
-            for (const std::string& one : *all) told.push_back(one);
-        }
+        Json& told = record["warnings"];  // those of the scene
+        const auto tell = [&](const std::vector<std::string>& all) {
+            for (const std::string& one : all) told.push_back(one);
+        };
+        tell(reached_.start_warning);
+        tell(reached_.warning);
+        tell(keeper_.warnings());
+        tell(unkept_);
         record["state"] = ended_.interrupted ? RunState::interrupted
                           : ended_.stopped   ? RunState::stopped
                                              : RunState::simulated;
@@ -341,6 +346,7 @@ class SimulationRun {
     Checkpoint checkpoint_;
     StageKeeper keeper_;
     DiskReserve reserve_;
+    std::vector<std::string> unkept_;  // warnings of how stages ended, which could not be kept
     bool has_begun_ = false;
     Progress progress_;
     Ended ended_;

@@ -45,7 +45,9 @@ void StageKeeper::keep(int frame, const std::vector<WorkPiece>& bodies,
     } catch (const std::exception& error) {
         const std::optional<Error> failure = failure_of(error);
         if (!failure) throw;
-        log_warning("{}; what comes of this stage is not kept", failure->what());
+        warnings_.push_back(
+            fmt::format("{}; what comes of this stage is not kept", failure->what()));
+        log_warning("{}", warnings_.back());
         can_ = false;
     }
     since_ = Clock::now();

@@ -46,6 +46,8 @@ class StageKeeper {
 
     // Of the run, that the present stage can be gone on from; none: its start.
     std::optional<int> frame() const { return frame_; }
+    // Of all stages that could not be kept.
+    const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -60,6 +62,7 @@ class StageKeeper {
     std::optional<int> frame_;
     Clock::time_point since_;  // it was kept or begun
     double cost_ = 0;          // of keeping it the last time [s]
+    std::vector<std::string> warnings_;
 };
 
 }  // namespace swage

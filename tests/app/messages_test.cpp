@@ -221,9 +221,34 @@ TEST_CASE("info repeats what a run warned of") {
     put_text(run / "run.json", json_text(record));
     CHECK(info().find("  warning      1-bend: it slipped\n  warning      2-cut: it missed\n") !=
           std::string::npos);
+    // Those of what it plotted and drew too.
+    record["plots"]["warnings"] = {"no gnuplot"};
+    record["drawing"] = {{"warnings", {"no film"}}};
+    put_text(run / "run.json", json_text(record));
+    CHECK(info().find("  warning      no gnuplot\n  warning      no film\n") !=
+          std::string::npos);
     record["warnings"] = 3;
     put_text(run / "run.json", json_text(record));
     CHECK(run_swage({"info", run.string()}).code == 5);
+}
+
+TEST_CASE("what a scene says in vain is on the record of its run, and in what that prints") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 1), run = scratch.path() / "run";
+    put_text(scene, bytes_of(scene) + "[skin]\nroughness = 0.1\n");  // rubber does not break
+    const Outcome ran =
+        run_swage({"run", scene.string(), "--no-render", "--json", "--out", run.string()});
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    REQUIRE(ran.err.find("has no effect") != std::string::npos);
+    for (const Json& record : {parse_json(bytes_of(run / "run.json")), parse_json(ran.out)}) {
+        REQUIRE(record.at("warnings").size() >= 1);
+        const std::string first = record.at("warnings").at(0);
+        CHECK(first.find("small.toml:") != std::string::npos);
+        CHECK(first.find("has no effect") != std::string::npos);
+        CHECK(ran.err.find(first.substr(first.find("roughness"))) != std::string::npos);
+    }
+    CHECK(run_swage({"info", run.string()}).out.find("has no effect") != std::string::npos);
 }
 
 TEST_CASE("who asks for more is told what each frame took the solver") {

@@ -183,7 +183,8 @@ TEST_CASE("a run goes on where its checkpoint finds no room") {
     INFO(outcome.err);
     CHECK(outcome.code == 0);
     CHECK(outcome.err.find("no run can go on from here") != std::string::npos);
-    check_same(whole, out);
+    check_same_but_for({"after-1.bin: cannot be written", "after-2.bin: cannot be written"}, whole,
+                       out);
 }
 
 TEST_CASE(

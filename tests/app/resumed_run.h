@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -61,25 +62,42 @@ inline Outcome run(const fs::path& scene, const fs::path& out, std::vector<std::
     return run_swage(more);
 }
 
-// All that a run left, but for what it took, what it went on from, and what others may.
-inline std::map<std::string, std::string> products(const fs::path& folder) {
+// All that a run left, but for what it took, what it went on from, and what others may. `warnings`:
+// words of each that it has and others have not.
+inline std::map<std::string, std::string> products(const fs::path& folder,
+                                                   const std::vector<std::string>& warnings = {}) {
     std::map<std::string, std::string> files = files_below(folder);
     std::erase_if(files, [](const auto& file) { return file.first.starts_with("resume/after-"); });
     Json record = parse_json(files.at("run.json"));
     record["seconds"] = nullptr;
     record.erase("went_on_from");
+    for (const std::string& warning : warnings) {
+        Json& all = record.at("warnings");
+        const auto is_it = [&](const Json& one) {
+            return one.get<std::string>().find(warning) != std::string::npos;
+        };
+        const auto at = std::find_if(all.begin(), all.end(), is_it);
+        REQUIRE(at != all.end());
+        all.erase(at);
+    }
     files["run.json"] = json_text(record);
     return files;
 }
 
-inline void check_same(const fs::path& one, const fs::path& other) {
-    const auto there = products(one), here = products(other);
+// The other's record has these warnings too.
+inline void check_same_but_for(const std::vector<std::string>& warnings, const fs::path& one,
+                               const fs::path& other) {
+    const auto there = products(one), here = products(other, warnings);
     for (const auto& [name, bytes] : there) {
         INFO(name);
         REQUIRE(here.contains(name));
         CHECK((here.at(name) == bytes));
     }
     CHECK(here.size() == there.size());
+}
+
+inline void check_same(const fs::path& one, const fs::path& other) {
+    check_same_but_for({}, one, other);
 }
 
 // Gone on with, it says so and leaves what a run that went through did.
