@@ -96,8 +96,9 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
     try {
         const Formula formula(node.text, known_);
         for (const std::string& name : formula.used()) used_.insert(name);
-        if (formula.is_constant()) {
-            formula.evaluate(std::vector<double>(known_.size(), 0.0));  // finite or refused
+        if (formula.is_constant()) {  // finite or refused
+            table.reading().number[&node] =
+                formula.evaluate(std::vector<double>(known_.size(), 0.0));
         }
         into = {node.text, text_place(node.place)};
     } catch (const TextError& error) {

@@ -56,6 +56,7 @@ void read_frame_rate(TableReader& table, FrameRate& rate) {
     }
     if (known) {
         rate = *known;
+        table.reading().number[node] = rate.value();
     } else {
         table.mistake("fps", fmt::format("fps = {} is no rate of films: it has to be a {}", said,
                                          kFrameRateForm));
