@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "base/text.h"
 #include "pipeline/csv.h"
@@ -31,6 +32,15 @@ void begin_row(LoadCurve& load, const Pose& pose) {
         column->push_back(column->empty() ? 0.0 : column->back());
     }
     load.contacts.push_back(0);
+}
+
+// What a part bears where nothing has been looked for.
+void forget_felt(LoadCurve& load) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    load.force.back() = load.torque.back() = Vec3::Constant(kUnknown);
+    for (std::vector<double>* column : {&load.axial_torque, &load.penetration, &load.contacts}) {
+        column->back() = kUnknown;
+    }
 }
 
 // Of each load.
@@ -108,7 +118,7 @@ Vec3 farthest_at_work(const LoadCurve& load) {
     for (std::size_t row = 0; row < load.gone.size(); ++row) {
         const Vec3& gone = load.gone[row];
         if (gone.norm() > of_all.norm()) of_all = gone;
-        if (!load.force[row].isZero(0) && gone.norm() > farthest.norm()) farthest = gone;
+        if (load.force[row].norm() > 0 && gone.norm() > farthest.norm()) farthest = gone;
     }
     return farthest.isZero(0) ? of_all : farthest;
 }
@@ -134,6 +144,13 @@ StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<T
             load_.back().axis = about;
         }
         begin_row(load_.back(), start[n].pose);
+        if (n < parts_) {
+            forget_felt(load_.back());
+        } else {
+            load_.back().force.back() = start[n].force;
+            load_.back().torque.back() = start[n].torque;
+            load_.back().contacts.back() = start[n].contacts;
+        }
         way_.push_back({start[n].pose});
     }
 }
@@ -237,14 +254,15 @@ std::vector<LoadPeaks> peaks_of(const StageCurves& curves) {
     for (const LoadCurve& load : curves.load()) {
         LoadPeaks peaks{load.name, {0, curves.frame().front()}, {0, curves.frame().front()}};
         peaks.stroke = farthest_at_work(load).norm();
-        for (std::size_t row = 0; row < curves.rows(); ++row) {
+        if (load.axis) peaks.axial = {0, curves.frame().front()};
+        // The first row is none of the stage's frames.
+        for (std::size_t row = 1; row < curves.rows(); ++row) {
             const auto raise = [&](Peak& peak, double size) {
                 if (size > peak.size) peak = {size, curves.frame()[row]};
             };
             raise(peaks.force, load.force[row].norm());
             raise(peaks.torque, load.torque[row].norm());
             if (load.axis) {
-                if (!peaks.axial) peaks.axial = {0, curves.frame()[row]};
                 const double axial = load.axial_torque[row];
                 if (std::abs(axial) > std::abs(peaks.axial->size)) {
                     peaks.axial = {axial, curves.frame()[row]};

@@ -30,7 +30,7 @@ struct LoadCurve {
     std::vector<double> axial_torque;
     std::vector<double> work;         // [J] done on the matter
     std::vector<double> penetration;  // [m]
-    std::vector<int> contacts;
+    std::vector<double> contacts;
 
     template <typename Io>
     void visit(Io& io) {
@@ -41,8 +41,9 @@ struct LoadCurve {
 
 class StageCurves {
   public:
-    // The first row is the start of the stage, where nothing is felt yet: names and poses, and what
-    // is known of the bodies (Simulation::start); what contacts hold there the first add() tells.
+    // The first row is the start of the stage: names and poses, what loads push with, and what is
+    // known of the bodies (Simulation::start); what contacts hold there the first add() tells. What
+    // the machine's parts bear there is not known: NaN.
     // The first `parts` of the loads are of the machine, and go where they are driven.
     // `axis`: of those that turn about one (turn_axes()). `probes`: the same ones every time.
     StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
@@ -91,7 +92,7 @@ std::string csv_text(const StageCurves& curves);
 // to 0; empty where it leaves that straight way by more than a twentieth, or goes nowhere.
 std::vector<double> stroke_of(const LoadCurve& load);
 
-// The most of what a tool, grip, blade or load did, and the frame it was in.
+// The most of what a tool, grip, blade or load did in the stage's frames, and the frame it was in.
 struct Peak {
     double size = 0;
     int frame = 0;
@@ -100,8 +101,10 @@ struct LoadPeaks {
     std::string name;
     Peak force, torque;           // [N], [N m]
     std::optional<Peak> axial{};  // of a part that turns, about its axis, the most to either side
-    double stroke = 0;            // [m] from where it was at the start, the farthest
-    double turn = 0;              // [rad] since the start, the most to either side
+    // [m] from where it was at the start: the farthest that it bears a force at, of all where it
+    // bears none.
+    double stroke = 0;
+    double turn = 0;  // [rad] since the start, the most to either side
 };
 std::vector<LoadPeaks> peaks_of(const StageCurves& curves);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <utility>
 
@@ -67,14 +68,18 @@ std::string graph(const StageCurves& curves, const std::string& label, Felt felt
     for (std::size_t n = 0; n < curves.load().size(); ++n) {
         const LoadCurve& load = curves.load()[n];
         const std::vector<double> size = felt(load);
-        if (std::all_of(size.begin(), size.end(), [](double s) { return s == 0; })) continue;
+        // What is not known is left out.
+        const auto is_drawn = [](double s) { return !std::isnan(s); };
+        if (std::none_of(size.begin(), size.end(), [](double s) { return s > 0; })) continue;
         program += fmt::format("$load{} << EOD\n", n);
         for (std::size_t row = 0; row < curves.rows(); ++row) {
+            if (!is_drawn(size[row])) continue;
             program += fmt::format("{:.9g} {:.9g}\n", axis.value[row], size[row]);
         }
         program += "EOD\n";
-        plots.push_back(fmt::format("$load{} using 1:2 with lines linetype {} linewidth 2 title {}",
-                                    n, n + 1, quoted(load.name)));
+        const bool is_line = std::count_if(size.begin(), size.end(), is_drawn) > 1;
+        plots.push_back(fmt::format("$load{} using 1:2 with {} linetype {} linewidth 2 title {}", n,
+                                    is_line ? "lines" : "points", n + 1, quoted(load.name)));
     }
     if (plots.empty()) return {};
     return program + "set ylabel " + quoted(label) + "\n" + "plot " + joined(plots, ", \\\n     ") +

@@ -155,7 +155,15 @@ std::vector<ToolLoad> Simulation::Rooms::loads(const Drive& now,
         loads.back().pose = middle.back();
     }
     const std::size_t first = loads.size() - pushes.size();
-    for (std::size_t n = 0; n < pushes.size(); ++n) loads[first + n].jump = pushes[n].jump;
+    for (std::size_t n = 0; n < pushes.size(); ++n) {
+        ToolLoad& load = loads[first + n];
+        load.jump = pushes[n].jump;
+        load.force = pushes[n].force;
+        load.torque = pushes[n].torque;
+        if (n < apparatus.load.size()) {
+            load.contacts = static_cast<int>(apparatus.load[n].point.size());
+        }
+    }
     return loads;
 }
 
@@ -377,13 +385,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveA
     const std::size_t first = report.load.size() - pushes.size();
     for (std::size_t n = 0; n < pushes.size(); ++n) {
         for (const BodyOutcome& body : outcome.body) r.load_work[n] += body.load_work[n];
-        ToolLoad& load = report.load[first + n];
-        load.force = pushes[n].force;
-        load.torque = pushes[n].torque;
-        load.work = r.load_work[n];
-        if (n < r.apparatus.load.size()) {
-            load.contacts = static_cast<int>(r.apparatus.load[n].point.size());
-        }
+        report.load[first + n].work = r.load_work[n];
     }
     if (outcome.given_up) throw GivenUp(outcome.given_up->why, std::move(report));
     return report;

@@ -23,7 +23,8 @@ std::map<std::string, std::vector<double>> columns_of(const fs::path& file) {
     while (std::getline(lines, line)) {
         std::size_t n = 0;
         for (std::istringstream row(line); std::getline(row, cell, ',');) {
-            columns[name.at(n++)].push_back(std::stod(cell));
+            // Empty: not known, as at the start.
+            columns[name.at(n++)].push_back(cell.empty() ? 0 : std::stod(cell));
         }
     }
     return columns;

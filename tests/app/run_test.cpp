@@ -408,6 +408,15 @@ TEST_CASE("the first row of the curves is the start, with what is known of it") 
     CHECK(std::stod(at_start("kinetic energy [J]")) == Approx(0.5 * mass * 4).epsilon(1e-6));
     CHECK(at_start("pieces") == "2");
     CHECK(at_start("contact energy [J]") == "0");  // not looked for yet
+    // Both bodies weigh the same. What the floor bears is not known yet.
+    CHECK(std::stod(at_start("gravity force y [N]")) == Approx(-2 * 9.81 * mass).epsilon(1e-6));
+    CHECK(std::stod(at_start("gravity torque y [N m]")) == 0);
+    for (const char* name : {"force y [N]", "torque z [N m]", "contacts", "penetration [m]"}) {
+        CHECK(at_start((std::string("floor ") + name).c_str()).empty());
+    }
+    CHECK(at_start("floor work [J]") == "0");
+    const Json peaks = parse_json(bytes_of(run / "run.json")).at("stages").at(0).at("peaks");
+    CHECK(peaks.at("gravity").at("force_frame") == 2);
 
     const std::string bodies = bytes_of(run / "curves/1-floor-bodies.csv");
     CHECK(bodies.find("\n1,0,work-piece,") != std::string::npos);

@@ -62,7 +62,10 @@ std::vector<std::map<std::string, double>> rows_of(const fs::path& curves) {
         row.emplace_back();
         const std::vector<std::string> cells = cells_of(line);
         REQUIRE(cells.size() == head.size());
-        for (std::size_t n = 0; n < head.size(); ++n) row.back()[head[n]] = std::stod(cells[n]);
+        for (std::size_t n = 0; n < head.size(); ++n) {
+            // Empty: not known, as at the start.
+            row.back()[head[n]] = cells[n].empty() ? 0 : std::stod(cells[n]);
+        }
     }
     return row;
 }
