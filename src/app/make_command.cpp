@@ -24,6 +24,10 @@ struct MakeArguments {
     std::map<std::string, std::string> value;  // of the chosen shape's parameters, as given
 };
 
+// "" would pass for what nobody gave.
+const CLI::Validator kSomething(
+    [](const std::string& text) { return text.empty() ? "\"\" is no value" : std::string(); }, "");
+
 Quantity quantity_of(ParameterKind kind) {
     switch (kind) {
         case ParameterKind::length:
@@ -112,6 +116,7 @@ void add_make_command(CLI::App& app, Action& chosen) {
                                          shown(parameter.low, parameter.kind),
                                          shown(parameter.high, parameter.kind),
                                          shown(parameter.value, parameter.kind)))
+                ->check(kSomething)
                 ->type_name(parameter.kind == ParameterKind::length  ? "LENGTH"
                             : parameter.kind == ParameterKind::angle ? "ANGLE"
                             : parameter.kind == ParameterKind::count ? "N"

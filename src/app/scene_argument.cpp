@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/command.h"
 #include "base/error.h"
 #include "base/log.h"
 
@@ -28,6 +29,7 @@ void refuse_run(const std::filesystem::path& file) {
 
 void add_assets_option(CLI::App& command, std::string& assets) {
     command.add_option("--assets", assets, "folder that contains machines/ and assets/")
+        ->check(kSomewhere)
         ->type_name("DIR");
 }
 
