@@ -107,7 +107,7 @@ void read_mold(TableReader& table, MoldSettings& mold) {
                            mold.kind);
     read_fineness(table, mold);
     int limit = static_cast<int>(mold.cell_limit);
-    table.whole("cell_limit", 1, 2'000'000'000, limit);
+    table.whole("cell_limit", 1, 1'000'000'000, limit);
     mold.cell_limit = static_cast<std::size_t>(limit);
     table.finish();
 }
