@@ -254,6 +254,11 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     FrameSource source(store, shot, look ? &*look : nullptr);
     PassWriter passes(store, settings, files, names, shot.drawn_from_world);
     PictureWriter writer(files, settings, frames, passes);
+    // What was made of earlier stills goes before the first of them does.
+    std::error_code ignored;
+    for (const std::filesystem::path& all : {files.film(), files.contact_sheet()}) {
+        std::filesystem::remove(all, ignored);
+    }
     Progress progress("draw", frames.last - frames.first + 1);
     for (int frame = frames.first; frame <= frames.last; ++frame) {
         throw_if_interrupted();

@@ -50,6 +50,7 @@ RenderDirectory::RenderDirectory(const fs::path& root, bool in_run, int first_fr
     }
     if (!lock_) lock_.emplace(root_);
     remove_temporaries(root_, 0);
+    had_film_ = fs::exists(files().film(), error);
     write_file_whole(mark(), "swage render draws here, and removes what it drew here before\n");
     set_unfinished_work(root_);
 }
@@ -82,10 +83,10 @@ int RenderDirectory::remove_others(const FrameRange& drawn, bool film,
         if (is_drawn_here({root_}, it->path()) && !of_now.contains(it->path()))
             others.push_back(it->path());
     }
-    if (!film) others.push_back(files().film());
-    return static_cast<int>(std::count_if(others.begin(), others.end(), [&](const fs::path& file) {
+    const auto removed = std::count_if(others.begin(), others.end(), [&](const fs::path& file) {
         return fs::remove(file, error);
-    }));
+    });
+    return static_cast<int>(removed) + (had_film_ && !film);
 }
 
 }  // namespace swage

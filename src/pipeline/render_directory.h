@@ -26,8 +26,8 @@ class RenderDirectory {
     RenderDirectory& operator=(const RenderDirectory&) = delete;
 
     DrawnFiles files() const { return {root_, first_frame_}; }
-    // Of earlier drawings, and maybe of another camera: stills and passes beside these, and the
-    // film where there is none now. Returns how many files they were.
+    // Of earlier drawings, and maybe of another camera: stills and passes beside these. Returns how
+    // many files they were, with the film, which draw_run() takes away, where there is none now.
     int remove_others(const FrameRange& drawn, bool film,
                       const std::vector<PicturePass>& passes = {}) const;
 
@@ -38,6 +38,7 @@ class RenderDirectory {
     int first_frame_;
     MadeFolder folder_;
     std::optional<FolderLock> lock_;
+    bool had_film_ = false;
 };
 
 }  // namespace swage

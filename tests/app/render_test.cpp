@@ -140,6 +140,24 @@ TEST_CASE("what a drawing that was killed left unfinished goes with the next") {
     }
 }
 
+TEST_CASE("what is drawn anew and ends early has no film or sheet of another time") {
+    const DrawableRun drawable("", "hold");
+    REQUIRE(drawable.draw(drawable.out()).code == 0);
+    const fs::path film = drawable.out() / "film.mp4", sheet = drawable.out() / "contact.png";
+    put_text(film, "of that time");
+    REQUIRE(fs::exists(sheet));
+    const fs::path still = drawable.out() / "frames/frame_0002.png";
+    fs::remove(still);
+    fs::create_directory(still);  // where the next one cannot be put
+    put_text(still / "mine", "mine");
+    const Outcome outcome = drawable.draw(drawable.out(), {"--camera-azimuth", "120"});
+    INFO(outcome.err);
+    CHECK(outcome.code == 5);
+    CHECK(fs::exists(drawable.out() / "frames/frame_0001.png"));
+    CHECK_FALSE(fs::exists(film));
+    CHECK_FALSE(fs::exists(sheet));
+}
+
 TEST_CASE("transparent stills have alpha and no film, and a film with them is refused") {
     const DrawableRun drawable;
     const fs::path out = drawable.out();
