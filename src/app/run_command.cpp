@@ -57,6 +57,9 @@ int run(const RunArguments& given) {
     } catch (const StoppedRun& stopped) {
         if (given.json) put_json(stopped.record);
         throw;
+    } catch (const InterruptedRun& interrupted) {
+        if (given.json) put_json(interrupted.record);
+        throw;
     } catch (const Error& error) {
         if (!given.json) throw;
         std::vector<Mistake> mistakes = reading.mistakes;
@@ -121,7 +124,8 @@ void add_run_command(CLI::App& app, Action& chosen) {
         "--force", given.force,
         "run even if the scene seems to need more memory, disk or time than there is");
     command->add_flag("--json", given.json,
-                      "print the run's record to stdout, even if the run stopped; if it could not "
+                      "print the run's record to stdout, even if the run stopped or was "
+                      "interrupted; if it could not "
                       "start, print why as `swage check` does");
 }
 

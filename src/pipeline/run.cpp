@@ -150,10 +150,10 @@ class SceneRun {
 
     int reached() const { return record_.at("frames").get<int>(); }
 
-    [[noreturn]] void leave(const Interrupted& interrupted) const {
+    [[noreturn]] void leave(const Interrupted& interrupted) {
         log_text(fmt::format("{} of {} frames are finished; swage render {} draws them", reached(),
                              frame_count(scene_), directory_.root().string()));
-        throw interrupted;
+        throw InterruptedRun(interrupted, std::move(record_));
     }
 
     // What ended the run is its outcome, whether that can be drawn and told or not.

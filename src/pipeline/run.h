@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "pipeline/json.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/run_options.h"
@@ -15,6 +16,13 @@ namespace swage {
 // What ended a run on its way, with what run.json holds of it.
 struct StoppedRun : Error {
     StoppedRun(const Error& why, Json ended) : Error(why), record(std::move(ended)) {}
+    Json record;
+};
+
+// The same where somebody asked it to end and run.json is written.
+struct InterruptedRun : Interrupted {
+    InterruptedRun(const Interrupted& why, Json ended)
+        : Interrupted(why), record(std::move(ended)) {}
     Json record;
 };
 
