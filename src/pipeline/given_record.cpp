@@ -9,6 +9,8 @@ namespace swage {
 
 namespace {
 
+Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
 Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 }  // namespace
@@ -56,6 +58,31 @@ Json settings_json(const SimSettings& settings) {
             {"directional_drag_along",
              settings.directional_drag_along == DragAlong::normal ? "normal" : "motion"},
             {"gravity_m_s2", {settings.gravity.x(), settings.gravity.y(), settings.gravity.z()}}};
+}
+
+Json mold_json(const MoldSettings& settings) {
+    Json json = {{"kind", settings.kind == MoldKind::block ? "block" : "shape"},
+                 {"cell_limit", settings.cell_limit}};
+    if (settings.across) json["across"] = *settings.across;
+    if (settings.spacing) json["spacing_m"] = *settings.spacing;
+    return json;
+}
+
+Json skin_json(const SkinSettings& settings) {
+    const char* kind = settings.kind == SkinKind::boundary ? "boundary"
+                       : settings.kind == SkinKind::frame4 ? "frame4"
+                                                           : "mount";
+    return {{"kind", kind},
+            {"divide", settings.divide},
+            {"crease_angle_rad", settings.crease_angle},
+            {"roughness", settings.roughness}};
+}
+
+Json start_json(const StartSpec& start) {
+    return {{"at_m", start.at ? vector_json(*start.at) : Json(nullptr)},
+            {"turn_rad", vector_json(start.turn)},
+            {"velocity_m_s", vector_json(start.velocity)},
+            {"spin_rad_s", vector_json(start.spin)}};
 }
 
 }  // namespace swage

@@ -5,6 +5,7 @@
 
 #include "matter/material.h"
 #include "pipeline/json.h"
+#include "scene/spec.h"
 #include "sim/settings.h"
 
 namespace swage {
@@ -13,5 +14,11 @@ namespace swage {
 Json material_json(const Material& material);
 
 Json settings_json(const SimSettings& settings);
+
+// What the scene gives of the two, across or spacing.
+Json mold_json(const MoldSettings& settings);
+Json skin_json(const SkinSettings& settings);
+// `at_m`: null where its file says it.
+Json start_json(const StartSpec& start);
 
 }  // namespace swage
