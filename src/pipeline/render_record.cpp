@@ -100,6 +100,12 @@ RenderSettings render_settings_of(const Json& record) {
         settings.width = json.at("size").at(0).get<int>();
         settings.height = json.at("size").at(1).get<int>();
         settings.field_of_view = json.at("field_of_view").get<double>();
+        if (settings.width < 1 || settings.height < 1) {
+            fail(ExitCode::output, "run.json: size is none of pictures");
+        }
+        if (!(settings.field_of_view > 0 && settings.field_of_view < kPi)) {
+            fail(ExitCode::output, "run.json: field_of_view is no angle of a camera");
+        }
         const auto rate = frame_rate_of(json.at("frames_per_second").get<double>());
         if (!rate) fail(ExitCode::output, "run.json: frames_per_second is no rate of films");
         settings.frame_rate = *rate;
