@@ -84,8 +84,9 @@ std::string HelpFormat::make_usage(const CLI::App* app, std::string name) const 
 
 std::string HelpFormat::make_help(const CLI::App* app, std::string name,
                                   CLI::AppFormatMode mode) const {
+    // What has commands of its own takes none but --help.
     const auto is_common = [&](const CLI::Option* option) {
-        return app->get_parent() != nullptr &&
+        return app->get_subcommands({}).empty() &&
                (option == app->get_help_ptr() || option->get_group() == kCommonOptions);
     };
     std::string text = wrapped(app->get_description(), 0, 0) + "\n" + make_usage(app, name);

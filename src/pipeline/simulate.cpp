@@ -266,7 +266,7 @@ class SimulationRun {
     // Whether that could be done; the run goes on all the same.
     bool write_reached() {
         const RunDirectory& directory = context_.directory;
-        const auto lap = context_.watch.lap("write");
+        const auto lap = context_.watch.lap("keep");
         try {
             make_folder(directory.resume());
             recorder_.keep(directory.kept_motion());

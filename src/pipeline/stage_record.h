@@ -58,7 +58,7 @@ std::size_t particle_count(const std::vector<WorkPiece>& bodies);
 std::size_t connection_count(const std::vector<WorkPiece>& bodies);
 int piece_count(const std::vector<WorkPiece>& bodies);
 
-// `overlap`: of the work-piece with itself [m].
+// `overlap`: the deepest of a body with itself [m].
 Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap,
                   const std::vector<std::string>& warnings);
 

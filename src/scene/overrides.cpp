@@ -10,14 +10,17 @@ namespace swage {
 
 namespace {
 
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return text;
+}
+
 std::vector<std::string> parts_of(const std::string& path) {
     std::vector<std::string> parts;
     for (std::size_t begin = 0; begin <= path.size();) {
         const std::size_t end = std::min(path.find('.', begin), path.size());
-        std::string_view part = std::string_view(path).substr(begin, end - begin);
-        while (!part.empty() && part.front() == ' ') part.remove_prefix(1);
-        while (!part.empty() && part.back() == ' ') part.remove_suffix(1);
-        parts.emplace_back(part);
+        parts.emplace_back(trimmed(std::string_view(path).substr(begin, end - begin)));
         begin = end + 1;
     }
     return parts;
@@ -135,7 +138,7 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
     const std::vector<std::string> parts = key_parts(text.substr(0, equals), place, mistakes);
     if (parts.empty()) return;
     const std::string& last = parts.back();
-    const Node value = parse_value(text.substr(equals + 1), place);
+    const Node value = parse_value(trimmed(std::string_view(text).substr(equals + 1)), place);
     for (Node* node : sections_of(parts, root, place, mistakes)) {
         if (node->kind == Node::Kind::array) {
             mistakes.add(place, which_text(parts[parts.size() - 2], last));
