@@ -23,7 +23,7 @@ double most_of(const fs::path& table, const std::string& column) {
     while (std::getline(lines, line)) {
         std::istringstream row(line);
         for (int n = 0; n <= at; ++n) std::getline(row, cell, ',');
-        most = std::max(most, std::stod(cell));
+        if (!cell.empty()) most = std::max(most, std::stod(cell));  // known
     }
     return most;
 }
