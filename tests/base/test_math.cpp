@@ -82,6 +82,21 @@ TEST_CASE(
     });
 }
 
+TEST_CASE("the rotation nearest to what is turned inside out is one all the same") {
+    for_each_pair([&](double a, double b) {
+        const Mat3 turn = turn_by(Vec3(a, b, 0.3)).toRotationMatrix();
+        const Vec3 stretch(1.5, 1.1, 0.7);
+        const auto difference = [&](const Vec3& along) {
+            const Mat3 found = nearest_rotation(turn * along.asDiagonal());
+            CHECK(found.determinant() == Approx(1).epsilon(1e-12));
+            return (found - turn).norm();
+        };
+        CHECK(difference(stretch) < 1e-12);
+        // Pressed through itself along its shortest side.
+        CHECK(difference(stretch.cwiseProduct(Vec3(1, 1, -1))) < 1e-12);
+    });
+}
+
 TEST_CASE("a turn onto a direction is the shortest, also onto the opposite one") {
     for_each_pair([&](double a, double b) {
         const Vec3 from(a, b, 1), to(-b, 2, a - 3);

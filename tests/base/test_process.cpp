@@ -83,6 +83,24 @@ TEST_CASE("a program left behind is ended", "[process]") {
     CHECK(seconds() < 200);
 }
 
+TEST_CASE("a program that does not end in its time is ended", "[process]") {
+    PipedProgram sleeper({"sleep", "20"});
+    CHECK(sleeper.finish_within(0.05) == 128 + SIGKILL);
+    PipedProgram quick({"sh", "-c", "cat >/dev/null; exit 3"});
+    CHECK(quick.finish_within(100) == 3);
+}
+
+TEST_CASE("all programs that run are ended at once, however many came before", "[process]") {
+    for (int n = 0; n < 20; ++n) {
+        PipedProgram before({"true"});
+        CHECK(before.finish() == 0);
+    }
+    PipedProgram one({"sleep", "20"}), other({"sleep", "20"});
+    kill_programs();
+    CHECK(one.finish() == 128 + SIGKILL);
+    CHECK(other.finish() == 128 + SIGKILL);
+}
+
 TEST_CASE("a failure comes back also where the end of children is ignored", "[process]") {
     const auto before = std::signal(SIGCHLD, SIG_IGN);
     PipedProgram five({"sh", "-c", "cat >/dev/null; exit 5"});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <clocale>
 #include <limits>
+#include <map>
+#include <sstream>
 
 #include "base/math.h"
 #include "base/suggest.h"
@@ -163,10 +165,90 @@ TEST_CASE("every unit's own name reads back as its quantity") {
     }
 }
 
+namespace {
+
+// Of a unit as its name says: parts by blanks and behind a stroke, each with a power at its end.
+double by_its_parts(std::string name, Quantity quantity) {
+    constexpr double kInch = 0.0254, kPound = 0.45359237, kPoundForce = kPound * 9.80665;
+    static const std::map<std::string, double> kPart = {{"m", 1},
+                                                        {"s", 1},
+                                                        {"g", 0.001},
+                                                        {"N", 1},
+                                                        {"Pa", 1},
+                                                        {"J", 1},
+                                                        {"rad", 1},
+                                                        {"l", 0.001},
+                                                        {"t", 1000},
+                                                        {"bar", 1e5},
+                                                        {"sec", 1},
+                                                        {"min", 60},
+                                                        {"h", 3600},
+                                                        {"deg", kPi / 180},
+                                                        {"in", kInch},
+                                                        {"inch", kInch},
+                                                        {"ft", 12 * kInch},
+                                                        {"yd", 36 * kInch},
+                                                        {"mile", 63360 * kInch},
+                                                        {"mil", kInch / 1000},
+                                                        {"lb", kPound},
+                                                        {"lbm", kPound},
+                                                        {"oz", kPound / 16},
+                                                        {"lbf", kPoundForce},
+                                                        {"ozf", kPoundForce / 16},
+                                                        {"kip", 1000 * kPoundForce},
+                                                        {"kgf", 9.80665},
+                                                        {"slug", kPoundForce / (12 * kInch)},
+                                                        {"turn", 2 * kPi}};
+    static const std::map<char, double> kTimes = {{'n', 1e-9}, {'u', 1e-6}, {'m', 1e-3},
+                                                  {'c', 1e-2}, {'d', 1e-1}, {'k', 1e3},
+                                                  {'M', 1e6},  {'G', 1e9}};
+    static const std::map<std::string, std::string> kOtherName = {
+        {"inches", "in"},   {"feet", "ft"},    {"degrees", "deg"},  {"\u00b0", "deg"},
+        {"\u00b5m", "um"},  {"\u03bcm", "um"}, {"psi", "lbf/in2"},  {"ksi", "kip/in2"},
+        {"psf", "lbf/ft2"}, {"mph", "mile/h"}, {"rpm", "turn/min"}, {"Nm", "N m"},
+        {"kNm", "kN m"},    {"Nmm", "N mm"},   {"turns", "turn"},   {"turns/s", "turn/s"}};
+    const auto value_of = [](const std::string& part) {
+        const auto known = kPart.find(part);
+        return known != kPart.end() ? known->second : kTimes.at(part[0]) * kPart.at(part.substr(1));
+    };
+    if (kOtherName.contains(name)) name = kOtherName.at(name);
+    const bool is_weight = quantity == Quantity::torque || quantity == Quantity::toughness;
+    const std::size_t stroke = std::min(name.find('/'), name.size());
+    std::istringstream above(name.substr(0, stroke)),
+        below(stroke < name.size() ? name.substr(stroke + 1) : "");
+    double value = 1;
+    for (std::istringstream* parts : {&above, &below}) {
+        for (std::string part; *parts >> part;) {
+            int power = 1;
+            if (part.back() == '2' || part.back() == '3')
+                power = part.back() - '0', part.pop_back();
+            if (is_weight && (part == "lb" || part == "oz")) part += 'f';
+            for (; power > 0; --power) {
+                value = parts == &above ? value * value_of(part) : value / value_of(part);
+            }
+        }
+    }
+    return value;
+}
+
+}  // namespace
+
+TEST_CASE("a unit is what the parts of its name make together") {
+    for (const std::string& name : quantity_names()) {
+        const Quantity quantity = *quantity_named(name);
+        for (const std::string& unit : unit_names(quantity)) {
+            CAPTURE(unit);
+            CHECK(parse_quantity("1 " + unit, quantity) ==
+                  Approx(by_its_parts(unit, quantity)).epsilon(1e-14));
+        }
+    }
+}
+
 TEST_CASE("shown quantities use a unit that reads well, and read back") {
     CHECK(quantity_text(0.18, Quantity::length) == "18 cm");
     CHECK(quantity_text(0.005, Quantity::length) == "5 mm");
     CHECK(quantity_text(0.01, Quantity::length) == "1 cm");
+    CHECK(quantity_text(0.06 - 0.05, Quantity::length) == "1 cm");  // less, by rounding
     CHECK(quantity_text(0, Quantity::length) == "0 m");
     CHECK(quantity_text(-0.3, Quantity::length) == "-30 cm");
     CHECK(quantity_text(210e9, Quantity::stress) == "210 GPa");
@@ -183,6 +265,18 @@ TEST_CASE("shown quantities use a unit that reads well, and read back") {
             CHECK(parse_quantity(text, quantity) == Approx(value).epsilon(1e-5));
         }
     }
+}
+
+TEST_CASE("what rounding alone puts beyond the end of a range is nearly in it") {
+    const Range range{0.1, 3 * 0.1};
+    CHECK_FALSE(range.holds(std::nextafter(0.1, 0)));
+    CHECK(range.nearly_holds(std::nextafter(0.1, 0)));
+    CHECK(range.nearly_holds(3 * 0.1 + 1e-16));
+    CHECK_FALSE(range.nearly_holds(0.0999));
+    CHECK_FALSE(range.nearly_holds(0.3001));
+    const Range from_none{0, 1};
+    CHECK(from_none.nearly_holds(-1e-16));
+    CHECK_FALSE(from_none.nearly_holds(-1e-12));
 }
 
 TEST_CASE("no locale changes how numbers are read or shown") {
