@@ -90,6 +90,44 @@ TEST_CASE("what swings between two frames is followed, within what the slack all
     }
 }
 
+TEST_CASE("the swings of tools and blades are followed as those of grips are") {
+    MachineSpec still;
+    still.name = "swing";
+    still.grip = vice_grips();
+    MotionSpec swing;
+    swing.move[0] = "0.1*length*sin(2*pi*10*t)";
+    MachineSpec with_tool = still, with_blade = still;
+    ToolSpec tool;
+    tool.name = "ball";
+    tool.shape = ToolShape::sphere;
+    tool.radius = "height";
+    tool.at = {"0", "4*height", "0"};
+    tool.motion = swing;
+    with_tool.tool = {tool};
+    BladeSpec blade;
+    blade.name = "blade";
+    blade.edge = {{"0", "4*height", "-width"}, {"0", "4*height", "width"}};
+    blade.motion = swing;
+    with_blade.blade = {blade};
+    const Aggregate body = bar();
+    for (const MachineSpec& spec : {with_tool, with_blade}) {
+        const Machine machine = build_machine(spec, {}, place_work_frame(body), body);
+        const Legs legs = legs_of(machine, 4, kSlack, false);
+        REQUIRE(legs.leg.size() > 100);
+        for (const Leg& leg : legs.leg) {
+            const Drive from = drive_at(machine, leg.begin, 1), to = drive_at(machine, leg.end, 1),
+                        is = drive_at(machine, 0.7 * leg.begin + 0.3 * leg.end, 1),
+                        told = drive_between(from, to, 0.3);
+            for (const auto poses : {&Drive::world_from_tool, &Drive::world_from_blade}) {
+                for (std::size_t n = 0; n < (is.*poses).size(); ++n) {
+                    const Vec3 off = (is.*poses)[n].translation - (told.*poses)[n].translation;
+                    CHECK(off.norm() <= 1.1 * kSlack);
+                }
+            }
+        }
+    }
+}
+
 TEST_CASE("a jump or a kink takes few legs, and is where it is to within a 64th of a frame") {
     for (const char* strength : {"t < 0.37 ? 0 : 1", "max(0, t - 0.37)", "t < 0.4 ? 0 : 1"}) {
         const Legs legs = legs_of(vice("0", "0", strength), 10, kSlack, false);

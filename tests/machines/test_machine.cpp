@@ -102,6 +102,7 @@ TEST_CASE("a parameter out of range is refused with its name, value and range in
     CHECK(says(refusal(roller(), {{"radius", std::nan("")}}), {"roller", "radius"}));
     CHECK(says(refusal(roller(), {{"angel", 1}}), {"roller", "angel"}));
     CHECK(refusal(roller(), {{"angle", kPi}}) == "");
+    CHECK(refusal(roller(), {{"angle", std::nextafter(180 * kPi / 180, 4)}}) == "");  // rounded
     CHECK(refusal(roller(), {{"offset", -0.3}}) == "");
     MachineSpec bad_default = roller();
     bad_default.parameter[0].default_value = "-1 deg";
@@ -217,6 +218,13 @@ TEST_CASE("tools that cannot be are refused by name") {
     spec.tool[0].shape = ToolShape::none;
     CHECK(says(refusal(spec), {"roller", "support", "no shape"}));
     spec = roller();
+    spec.tool[0].shape = ToolShape::box;
+    spec.tool[0].size = {"3 cm", "2 cm", "4 cm"};
+    spec.tool[0].rounding = "1 cm";
+    CHECK(refusal(spec) == "");
+    spec.tool[0].rounding = "1.01 cm";
+    CHECK(says(refusal(spec), {"roller", "rounding", "support", "1.01 cm", "half"}));
+    spec = roller();
     spec.tool[1].friction = "-1";
     CHECK(says(refusal(spec), {"roller", "pusher", "friction"}));
     spec = roller();
@@ -289,6 +297,11 @@ TEST_CASE("a grip holds what lies in its box, wherever its edge runs, and its ja
         Box jaws;
         for (const Vec3& x : grip.jaw.position) jaws.grow(x);
         CHECK(jaws.size().x() == Approx(length).margin(1e-6));
+        // The other end of a box ends jaws too.
+        spec.grip[1].from[0] = fmt::format("{}*length", -edge);
+        Box other;
+        for (const Vec3& x : set_up(spec, body).apparatus.grip[1].jaw.position) other.grow(x);
+        CHECK(other.size().x() == Approx(length).margin(1e-6));
     }
 }
 
@@ -350,6 +363,9 @@ TEST_CASE("grips that hold nothing, hold twice or jump at the start are refused 
     spec = vice();
     spec.grip[0].motion.turn = "1 deg";
     CHECK(says(refusal(spec), {"vice", "hold", "must be 0 at t = 0"}));
+    spec = vice();
+    spec.grip[1].motion.turn = "1 deg";  // about the axis that it lies on
+    CHECK(says(refusal(spec), {"vice", "turn", "must be 0 at t = 0"}));
 }
 
 TEST_CASE("a blade's edge goes where its motion says, its plate behind it") {

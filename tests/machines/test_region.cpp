@@ -168,6 +168,53 @@ TEST_CASE("a force spreads over what is stretched as that lies, and acts where i
     CHECK((machine.load_on[0][0].middle - turn * Vec3(0, 0.4, 0.2)).norm() < 1e-6);
 }
 
+TEST_CASE("a side is what looks there now, not what did when it was molded") {
+    Aggregate matter = upright();
+    const auto rolled = [](const Vec3& x) { return Vec3(x.x(), -x.z(), x.y()); };  // about x
+    deform(matter, [&](const Vec3& x) { return rolled(1.5 * x); });
+    for (const auto& [side, normal] :
+         {std::pair(Side::top, Vec3(Vec3::UnitY())), std::pair(Side::left, Vec3(-Vec3::UnitZ()))}) {
+        LoadSpec spec = push(side);
+        MachineSpec none;
+        none.name = "none";
+        none.load = {spec};
+        const WorkFrame frame = place_work_frame(matter, WorldAxis::z, WorldAxis::y);
+        const Load load = build_machine(none, {}, frame, matter).apparatus.load.at(0);
+        CHECK_FALSE(load.point.empty());
+        for (const int p : load.point) CHECK(rolled(matter.surface.normal(p)).dot(normal) == 1);
+    }
+}
+
+TEST_CASE("of patches that a box cuts off, a force acts by what is left of each") {
+    const Aggregate matter = upright();
+    LoadSpec spec = push(Side::top);
+    spec.box = {{{"-length", "-height", "-width"}, {"0.02", "height", "width"}}};
+    const Load load = with(matter, spec).apparatus.load.at(0);
+    REQUIRE(load.share.size() == load.point.size());
+    double whole = 0, cut = 0;
+    for (std::size_t n = 0; n < load.point.size(); ++n) {
+        const bool is_cut = load.share[n] < 0.99;
+        CHECK(load.share[n] == Approx(is_cut ? 0.4 : 1).epsilon(1e-4));  // 2 of 5 cm
+        (is_cut ? cut : whole) += load.force[n].norm() / load.share[n];
+    }
+    CHECK(cut / whole == Approx(1.0 / 8).epsilon(1e-4));  // as many of 2 * 4 more before it
+}
+
+TEST_CASE("a patch whose cell is parted has the area that it had, others what they have now") {
+    Aggregate matter = upright();
+    sever_plane(matter, Vec3(0, 0.05, 0), Vec3::UnitY());
+    deform(matter, [](const Vec3& x) { return Vec3(3 * x.x(), 3 * x.y(), 3 * x.z()); });
+    std::size_t parted = 0;
+    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+        const bool is_parted = !cell_is_whole(matter, matter.surface.row(p));
+        parted += is_parted;
+        CHECK(patch_area(matter, p) ==
+              Approx((is_parted ? 1 : 9) * matter.surface.area(p)).epsilon(1e-6));
+    }
+    CHECK(parted > 0);
+    CHECK(parted < matter.surface.size());
+}
+
 TEST_CASE("a pressure whose box cuts patches off a surface does not press it all round") {
     const Aggregate ball = make_shape([](const Vec3& x) { return x.norm() - 0.75; },
                                       Vec3::Constant(-0.8), Vec3i(16, 16, 16), 0.1);

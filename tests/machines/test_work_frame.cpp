@@ -90,6 +90,8 @@ TEST_CASE("the longest side is that of the skin, whatever samples of the surface
     CHECK(along({}).y() == 1);
     CHECK(along({{0, 0, 0}, {1, 2, 2.1}}).z() == 1);
     CHECK(along({{0, 0, 0}, {1, 2.1, 2}}).y() == 1);
+    CHECK(along({{0, 0, 0}, {1, 2, 2.01}}).y() == 1);  // as long, and first
+    CHECK(along({{0, 0, 0}, {1.995, 2, 2.01}}).x() == 1);
 }
 
 TEST_CASE("a body without a surface has no place for a machine") {
