@@ -103,6 +103,24 @@ TEST_CASE("shards that fly apart have no more energy once they are one") {
     }
 }
 
+TEST_CASE("a cell that is pressed flat moves what is molded anew as it moves itself") {
+    Aggregate old = make_block(4, 4, 4, 0.1, Material{});
+    deform(old, [](const Vec3& x) {  // its two lowest layers
+        return Vec3(x.x(), x.y(), std::max(x.z(), -1e-9 * x.x()));
+    });
+    set_in_motion(old, [](const Vec3& x) { return Vec3(2, 0.5 * x.x(), x.z() > 0.05 ? 1 : -1); });
+    Aggregate anew = make_block(4, 4, 2, 0.1, {.density = 2000});  // of as much mass
+    deform(anew, [](const Vec3& x) { return Vec3(x.x(), x.y(), x.z() + 0.1); });
+    carry_motion(old, anew);
+    const double energy = motion_of(old).energy / old.mass();
+    CHECK(motion_of(anew).energy / anew.mass() < 1.5 * energy);
+    double fastest = 0;
+    for (std::size_t p = 0; p < anew.particle_count(); ++p) {
+        fastest = std::max(fastest, anew.particle_velocity.at(p).norm());
+    }
+    CHECK(fastest < 4);
+}
+
 TEST_CASE("what rests is molded anew at rest") {
     const Aggregate old = make_block(2, 2, 2, 0.1, Material{});
     Aggregate anew = old;

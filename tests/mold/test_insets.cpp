@@ -256,6 +256,44 @@ TEST_CASE("of insets that overlap within cells each has its volume") {
     check(with_insets(bar, {divided(wide), divided(low)}, 4), volume);
     check(with_insets(bar, {wide, divided(low)}, 4), volume);
     check(with_insets(bar, {divided(wide), low}, 4), volume);
+    check(with_insets(bar,
+                      {divided(box_mesh({1, -1, -1}, {7, 5, 5})),
+                       divided(box_mesh({1, 1.5, -1}, {9, 5, 5})),
+                       divided(box_mesh({1, 1.3, -1}, {5, 5, 5}))},
+                      4),
+          {44, 32.8, 40, 43.2});
+}
+
+TEST_CASE("a boundary between materials looks along its own normal, also at the body's surface") {
+    const TriMesh bar = box_mesh({0, 0, 0}, {10, 4, 4});
+    for (const int across : {2, 4}) {
+        const Aggregate matter = with_insets(bar, {box_mesh({0, 0, 0}, {2.3, 4, 4})}, across);
+        CHECK(matter.mixed_cell.size() == std::size_t(across * across));
+        for (const MixedCell& cell : matter.mixed_cell) {
+            CHECK(std::abs(cell.normal.x()) > 1 - 1e-6f);
+        }
+    }
+}
+
+TEST_CASE("the two materials of a cell fill it as far as the body does") {
+    const TriMesh body = rod();
+    for (const double end : {0.0, 0.0021}) {
+        const Aggregate matter = with_insets(
+            body, {box_mesh({-1, -1, -1}, {end, 1, 1}), box_mesh({-1, -1, -1}, {1, -0.001, 1})}, 5);
+        REQUIRE(matter.mixed_cell.size() > 20);
+        for (const MixedCell& cell : matter.mixed_cell) {
+            CHECK(cell.fill[0] + cell.fill[1] == Approx(matter.cell_fill[cell.cell]).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("an inset whose parts overlap is not said to lie outside of the body") {
+    const TriMesh bar = box_mesh({0, 0, 0}, {10, 2, 2});
+    const TriMesh part = box_mesh({1, 0.5, 0.5}, {5, 1.5, 1.5});
+    std::vector<std::string> told;
+    const Aggregate matter = with_insets(bar, {together(part, part)}, 4, &told);
+    CHECK(material_volumes(matter)[1] == Approx(4).epsilon(1e-6));
+    CHECK(told == std::vector<std::string>());
 }
 
 TEST_CASE("a coat within a cell, between two parts of one material, has its volume") {

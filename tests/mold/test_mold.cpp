@@ -2,7 +2,10 @@
 #include "mold/mold.h"
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
+#include "matter/material_volumes.h"
+#include "mold/prepare.h"
 #include "mold/topology.h"
 #include "tests/mold/checks.h"
 
@@ -151,23 +154,31 @@ TEST_CASE("a surface point is carried by a firm cell, or by the fullest within r
     const auto corner = [&](CellId cell, int c) {
         return Vec3(matter.particle_reference.at(lattice.cell_corners(cell)[c]));
     };
-    int thin = 0;
+    int thin = 0, drawn_in = 0;
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        const Vec3 point = matter.surface_reference(p);
+        const Vec3 point = matter.surface_reference(p), place = matter.surface.place(p);
         float carrier = 0, fullest = 0;
+        double far = 0, nearest = 1;  // of the carrier, of a firm cell [m]
+        // No farther outside of it than its weights may grow.
+        CHECK(place.minCoeff() >= -0.5);
+        CHECK(place.maxCoeff() <= 1.5);
+        drawn_in += place.minCoeff() < -0.25 || place.maxCoeff() > 1.25;
         for (CellId cell = 0; cell < static_cast<CellId>(matter.cell_fill.size()); ++cell) {
             const Vec3 low = corner(cell, 0), high = corner(cell, 7);
             if (lattice.cell_corners(cell) == matter.surface.corner(p)) {
                 carrier = matter.cell_fill[cell];
+                far = (point - point.cwiseMax(low).cwiseMin(high)).norm();
             }
-            if ((point - point.cwiseMax(low).cwiseMin(high)).norm() < 0.45 * lattice.spacing) {
-                fullest = std::max(fullest, matter.cell_fill[cell]);
-            }
+            const double off = (point - point.cwiseMax(low).cwiseMin(high)).norm();
+            if (off < 0.45 * lattice.spacing) fullest = std::max(fullest, matter.cell_fill[cell]);
+            if (matter.cell_fill[cell] >= 0.4f) nearest = std::min(nearest, off);
         }
         thin += carrier < 0.4f;
         CHECK((carrier >= 0.4f || carrier >= fullest));
+        if (carrier >= 0.4f) CHECK(far <= nearest + 1e-6 * lattice.spacing);
     }
     CHECK(thin > 0);
+    CHECK(drawn_in > 0);
 }
 
 TEST_CASE("a block holds the mesh's box in whole cells") {
@@ -287,6 +298,61 @@ TEST_CASE("what matter has not as its mesh has it is told to the one who asks") 
     mold(mesh, Material{}, settings, {}, &told);
     REQUIRE(told.size() == 1);
     CHECK(told[0].find("2 separate bodies became 1") == 0);
+}
+
+TEST_CASE("what of a mesh is lost, or filled less than nothing, is told with how much") {
+    MoldSettings settings;
+    settings.spacing = 1;
+    const TriMesh box = box_mesh({0, 0, 0}, {4, 2, 2});
+    const auto told_of = [&](const TriMesh& beside) {
+        std::vector<std::string> told;
+        mold(together(box, beside), Material{}, settings, {}, &told);
+        std::string all;
+        for (const std::string& one : told) all += one + "\n";
+        return all;
+    };
+    const TriMesh grain = box_mesh({7.4, 0.4, 0.4}, {7.45, 0.45, 0.45});
+    CHECK(told_of(grain).find("125 cm3 is lost in pieces too small for cells of 1 m\n") !=
+          std::string::npos);
+    const TriMesh hollow = turned_inside_out(box_mesh({6, 0, 0}, {7, 1, 1}));
+    CHECK(told_of(hollow).find("0 m3 beyond full cells and 1 m3 filled negatively are left out") !=
+          std::string::npos);
+    CHECK(told_of(box_mesh({0, 0, 0}, {1, 2, 2}))
+              .find("4 m3 beyond full cells and 0 m3 filled negatively are left out") !=
+          std::string::npos);
+}
+
+TEST_CASE("what would take more memory than there is is refused before it takes any") {
+    if (whole_memory() > 1e11) return;
+    MoldSettings settings;
+    settings.cell_limit = 1'000'000'000;
+    settings.spacing = 0.00189;  // 888 million cells
+    std::string sentence;
+    CHECK(refusal(
+              [&] {
+                  refuse_too_many_cells(box_mesh({0, 0, 0}, {3, 1, 2}), settings);
+              },
+              &sentence) == ExitCode::resources);
+    CHECK(sentence.find("of memory that there is: use a larger spacing") != std::string::npos);
+}
+
+TEST_CASE("each material has the mass that it is given, and its density where it has none") {
+    const TriMesh bar = box_mesh({0, 0, 0}, {4, 2, 2});
+    Material light, heavy;
+    light.density = 700, heavy.density = 5000;
+    const std::vector<Inset> insets = {{box_mesh({0, 0, 0}, {1.3, 2, 2}), heavy}};
+    MoldSettings settings;
+    settings.spacing = 0.5;
+    const std::vector<double> masses = {3, 50};
+    const Aggregate weighed = mold(bar, light, settings, insets, nullptr, &masses);
+    CHECK(weighed.mass() == Approx(53).epsilon(1e-6));
+    CHECK(material_masses(weighed)[0] == Approx(3).epsilon(1e-6));
+    CHECK(material_masses(weighed)[1] == Approx(50).epsilon(1e-6));
+    CHECK(weighed.inset[0].density == Approx(50 / (1.3 * 4)).epsilon(1e-6));
+    const std::vector<double> of_one = {3, 0};
+    const Aggregate other = mold(bar, light, settings, insets, nullptr, &of_one);
+    CHECK(other.material.density == Approx(3 / (2.7 * 4)).epsilon(1e-6));
+    CHECK(other.inset[0].density == 5000);
 }
 
 TEST_CASE("bodies become one where they stand less than two cells apart, which is told") {

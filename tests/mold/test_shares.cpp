@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "mold/caps.h"
 #include "tests/mold/checks.h"
 
 using namespace swage;
@@ -169,6 +170,33 @@ TEST_CASE("flat holes are closed exactly") {
         TriMesh tube = box;
         tube.triangle.erase(tube.triangle.begin() + 4 * axis, tube.triangle.begin() + 4 * axis + 4);
         check_matter(box, mold_across(tube, 4));
+    }
+}
+
+TEST_CASE("the middle of a hole does not go by how finely its rim is divided") {
+    TriMesh open = box_mesh({0, 0, 0}, {2, 2, 2});
+    const auto is_top = [&](const Corners& t) {
+        return std::ranges::all_of(t, [&](int i) { return open.position[i].z() == 2; });
+    };
+    std::erase_if(open.triangle, is_top);
+    CHECK((caps_over_holes(open).apex.at(0) - Vec3(1, 1, 2)).norm() < 1e-12);
+    // Halves of the rim's first edge, and one of these again.
+    for (int n = 0; n < 2; ++n) {
+        const Corners t = caps_over_holes(open).triangle.at(0);
+        const int middle = static_cast<int>(open.position.size());
+        open.position.push_back(0.5 * (open.position[t[0]] + open.position[t[1]]));
+        for (std::size_t k = 0; k < open.triangle.size(); ++k) {
+            for (int c = 0; c < 3; ++c) {
+                const Corners old = open.triangle[k];
+                if (old[c] != t[1] || old[(c + 1) % 3] != t[0]) continue;
+                open.triangle[k] = {old[c], middle, old[(c + 2) % 3]};
+                open.triangle.push_back({middle, old[(c + 1) % 3], old[(c + 2) % 3]});
+                k = open.triangle.size();
+                break;
+            }
+        }
+        CHECK(caps_over_holes(open).triangle.size() == std::size_t(5 + n));
+        CHECK((caps_over_holes(open).apex.at(0) - Vec3(1, 1, 2)).norm() < 1e-12);
     }
 }
 
