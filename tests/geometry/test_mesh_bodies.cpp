@@ -82,6 +82,11 @@ TEST_CASE("a rib that runs from wall to wall of a cavity becomes one with the wa
     CHECK(signed_volume(repair.mesh) == Approx(1000 - 512 + 4 * 8));
     CHECK(check_mesh(repair.mesh).bounds_a_volume());
 
+    // Given before the walls.
+    TriMesh before = box_mesh({4, 4, 0.5}, {6, 6, 9.5});
+    append(before, hollow_box());
+    CHECK(signed_volume(repair_mesh(before).mesh) == Approx(1000 - 512 + 4 * 8));
+
     // Inside out, the whole of it.
     for (Corners& t : ribbed.triangle) std::swap(t[0], t[1]);
     const Repair turned = repair_mesh(ribbed);
@@ -144,7 +149,9 @@ TEST_CASE("cavities that cross are one") {
 
     // And stay so where the body crosses another.
     append(mesh, box_mesh({9.5, 4, 4}, {12, 6, 6}));
-    CHECK(signed_volume(repair_mesh(mesh).mesh) == Approx(1000 - 250 + 8 + 8));
+    const Repair crossed = repair_mesh(mesh);
+    CHECK(signed_volume(crossed.mesh) == Approx(1000 - 250 + 8 + 8));
+    CHECK(told(crossed, "a volume of 2 m3 was counted more than once"));
 }
 
 TEST_CASE("a mesh given twice, as two shells, is one body") {
@@ -185,6 +192,8 @@ TEST_CASE("crossing bodies are united to their true volume and keep their looks"
     bars.triangle_material.resize(24, 1);
     for (const Vec3& p : bars.position) bars.uv.emplace_back(p.x(), p.y() + p.z());
     bars.triangle_uv = bars.triangle;
+    const auto color_at = [](const Vec3& p) -> Vec3 { return (p + Vec3(3, 3, 3)) / 7; };
+    for (const Vec3& p : bars.position) bars.position_color.push_back(color_at(p).cast<float>());
     const Repair repair = repair_mesh(bars);
     CHECK(told(repair, "united 2 crossing bodies"));
     CHECK(signed_volume(repair.mesh) == Approx(6 + 0.64 * 6 - 0.64));
@@ -196,6 +205,26 @@ TEST_CASE("crossing bodies are united to their true volume and keep their looks"
             const Vec3& p = repair.mesh.position[repair.mesh.triangle[t][k]];
             const Vec2& uv = repair.mesh.uv[repair.mesh.triangle_uv[t][k]];
             CHECK((uv - Vec2(p.x(), p.y() + p.z())).norm() < 1e-9);
+        }
+    REQUIRE(repair.mesh.position_color.size() == repair.mesh.position.size());
+    for (std::size_t i = 0; i < repair.mesh.position.size(); ++i) {
+        const Vec3 wanted = color_at(repair.mesh.position[i]);
+        CHECK((repair.mesh.position_color[i].cast<double>() - wanted).norm() < 1e-6);
+    }
+}
+
+TEST_CASE("normals of crossing bodies are where they are cut what they were there") {
+    TriMesh bars = box_mesh({-3, -0.5, -0.5}, {3, 0.5, 0.5});
+    append(bars, box_mesh({-0.4, -3, -0.4}, {0.4, 3, 0.4}));
+    bars.triangle_smooth = bars.triangle;
+    bars.smooth_group_count = static_cast<int>(bars.position.size());
+    bars.smooth_normal = bars.position;  // linear in the place, and outward
+    const TriMesh mesh = repair_mesh(bars).mesh;
+    REQUIRE(mesh.triangle.size() > bars.triangle.size());
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const Vec3& normal = mesh.smooth_normal.at(std::size_t(mesh.triangle_smooth[t][k]));
+            CHECK((normal - mesh.position[mesh.triangle[t][k]]).norm() < 2e-3);
         }
 }
 

@@ -178,6 +178,9 @@ TEST_CASE("what of an OBJ's materials is not drawn is told, where it would show"
               "of the materials' values only Kd, Ns, Pr and Pm are used, not Ke, Ks",
               "the material 'one' does not repeat its image beyond the borders (-clamp on): drawn "
               "repeated"});
+    CHECK(findings("Tr 0\nd 1\n").empty());  // both opaque
+    CHECK(findings("Tr 0.2\n").size() == 1);
+    CHECK(findings("d 0.2\n") == findings("Tr 0.2\n"));
 }
 
 TEST_CASE("colours that jump at an edge stay with their faces") {
@@ -257,6 +260,13 @@ TEST_CASE("materials keep their names where they have no colours, or one alone")
         return name;
     };
     using Names = std::vector<std::string>;
+    // Colours are of what the material has.
+    folder.write("half.mtl", "newmtl motley\nKd 0.5 0.25 1\n");
+    const TriMesh half = read_quietly(
+        folder.write("half.obj", "mtllib half.mtl\n" + text + "usemtl motley\nf 4 5 6\nf 7 8 9\n"));
+    REQUIRE(half.material.size() == 2);
+    CHECK((half.material[0].color - Vec3(0.5, 0, 0)).norm() < 1e-6);
+    CHECK((half.material[1].color - Vec3(0, 0.25, 0)).norm() < 1e-6);
     CHECK(names("usemtl side checks\nf 1 2 3\nusemtl red\nf 4 5 6\nusemtl green\nf 7 8 9\n") ==
           Names{"side checks", "red", "green"});
     CHECK(names("usemtl side checks\nf 1 2 3\nusemtl motley\nf 4 5 6\nf 7 8 9\n") ==

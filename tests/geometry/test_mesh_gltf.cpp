@@ -122,6 +122,37 @@ const Kind kKinds[] = {{5120, 127}, {5121, 255}, {5122, 32767}, {5123, 65535}};
 
 }  // namespace
 
+TEST_CASE("an accessor of whole numbers begins where its offset says") {
+    const Folder folder;
+    Values five = scaled(kSquare, 5122, 100, false);
+    five.value.insert(five.value.begin(), {9000, 9000, 9000});  // not of it
+    Document document = document_of({five}, R"(,"uri":"my%20data.bin")");
+    const std::string all = R"("bufferView":0,"componentType":5122,"count":5)";
+    REQUIRE(document.json.find(all) != std::string::npos);
+    document.json.replace(document.json.find(all), all.size(),
+                          R"("bufferView":0,"byteOffset":8,"componentType":5122,"count":4)");
+    folder.write("my data.bin", document.bin);
+    const TriMesh mesh = test::read_quietly(folder.write("a.gltf", document.json));
+    CHECK(box_of(mesh.position).low == Vec3::Zero());
+    CHECK(box_of(mesh.position).high == Vec3(100, 100, 0));
+}
+
+TEST_CASE("a mirrored glTF keeps its normals, mirrored with it") {
+    const Folder folder;
+    Values normal{"NORMAL", 5126, 3, {}};
+    for (int n = 0; n < 4; ++n) normal.value.insert(normal.value.end(), {0.6, 0, 0.8});
+    for (const double scale : {1.0, -1.0}) {
+        const TriMesh mesh =
+            read(folder, {kSquare, normal}, "", fmt::format(R"(,"scale":[{},1,1])", scale)).mesh;
+        const Vec3 out = area_vector(mesh.position, mesh.triangle[0]);
+        CHECK(out.z() > 0);
+        REQUIRE(mesh.smooth_normal.size() == std::size_t(mesh.smooth_group_count));
+        for (const Vec3& n : mesh.smooth_normal) {
+            CHECK((n - Vec3(0.6 * scale, 0, 0.8)).norm() < 1e-6);
+        }
+    }
+}
+
 TEST_CASE("whole numbers in a glTF stand for what its specification says") {
     const Folder folder;
     const Values uv{"TEXCOORD_0", 5126, 2, {0, 1, 1, 1, 1, 0, 0, 0}};

@@ -79,6 +79,18 @@ TEST_CASE("edges are sharp beyond the crease angle where a file says nothing of 
     CHECK(groups(roof + "s 1\n" + faces, 0) == 6);  // what it says counts
 }
 
+TEST_CASE("a corner's normal does not go by how its faces are divided") {
+    TriMesh box = box_mesh({0, 0, 0}, {1, 1, 1});
+    smooth_by_crease_angle(box, kPi);
+    const std::vector<Vec3> normal = smooth_normals(box, box.position);
+    REQUIRE(normal.size() == 8);
+    for (std::size_t t = 0; t < box.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 out = 2 * box.position[box.triangle[t][k]] - Vec3::Ones();
+            CHECK((normal[box.triangle_smooth[t][k]] - out.normalized()).norm() < 1e-12);
+        }
+}
+
 TEST_CASE("a file's own normals are those that corners shade by, and that are written") {
     const Folder folder;
     const TriMesh ball = ball_mesh(8, 0.3);

@@ -48,6 +48,19 @@ TEST_CASE("parts that bound something only together are groups, not objects of t
     // Closed by themselves they stay objects, also where they touch.
     write_obj(folder / "b.obj", boxes_at({-9, 0, 3}));
     CHECK(statements(bytes_of(folder / "b.obj")) == "o part_0;o part_1;o part_2;");
+    // Also where they share the vertices of an edge.
+    TriMesh edge = boxes_at({0, 3});
+    for (std::size_t p = 8; p < 16; ++p) {
+        Vec3& at = edge.position[p];
+        if (at.y() > 1) at.y() = 1;
+        at.z() = at.z() > 0 ? 0 : -1;
+        for (int q = 0; q < 8; ++q) {
+            if (edge.position[q] != at) continue;
+            for (Corners& t : edge.triangle) std::replace(t.begin(), t.end(), int(p), q);
+        }
+    }
+    write_obj(folder / "c.obj", edge);
+    CHECK(statements(bytes_of(folder / "c.obj")) == "o part_0;o part_1;");
 }
 
 TEST_CASE("an object of an OBJ stands in one place, wherever its triangles are in the mesh") {

@@ -87,8 +87,19 @@ TEST_CASE("an open box is closed to its true volume; two holes are two fillings"
     TriMesh box = box_mesh({0, 0, 0}, {1, 2, 3});
     drop(box, {0, 1, 2, 3});  // bottom and top
     const Repair repair = repair_mesh(box);
-    CHECK(told(repair, "closed 2 holes, 8 edges in total, with 4 triangles"));
+    CHECK(told(repair, "closed 2 holes, 8 edges in total, with 4 triangles, 18 % of the surface"));
     CHECK(signed_volume(repair.mesh) == Approx(6));
+}
+
+TEST_CASE("of a sheet the smaller number of triangles is turned, whichever comes first") {
+    for (const std::size_t wrong : {0, 7}) {
+        TriMesh box = box_mesh({0, 0, 0}, {1, 2, 3});
+        flip_triangle(box, wrong);
+        const Repair repair = repair_mesh(box);
+        CHECK(repair.account ==
+              std::vector<std::string>{"turned 1 triangle to agree with their neighbours"});
+        CHECK(signed_volume(repair.mesh) == Approx(6));
+    }
 }
 
 TEST_CASE("triangles turned at random are turned back") {
@@ -364,6 +375,16 @@ TEST_CASE("an open sheet is refused with what to do; beside a body it is left ou
     CHECK(told(repair, "left out 1 open sheet"));
     CHECK(signed_volume(repair.mesh) == Approx(27));
     CHECK(repair.mesh.position.size() == 8);  // nothing stray is left to spoil the box
+
+    // Up to a quarter of all area.
+    for (const double size : {1.2, 1.8}) {
+        TriMesh large = sheet;
+        for (Vec3& p : large.position) p *= size;
+        TriMesh beside = box_mesh({0, 0, -5}, {1, 1, -4});
+        append(beside, large);
+        const std::string reason = refusal(beside);
+        CHECK((reason.find("thickness") != std::string::npos) == (size > 1.5));
+    }
 
     TriMesh double_sided = sheet;
     for (Corners t : sheet.triangle) {

@@ -188,6 +188,44 @@ TEST_CASE("texture coordinates of a PLY are of the precision that MeshLab reads"
     }
 }
 
+TEST_CASE("a PLY holds the texture coordinates of polygons of hundreds of corners") {
+    const Folder folder;
+    for (const int sides : {100, 127, 128, 200, 255, 256, 300}) {
+        std::string text, ends[2] = {"f", "f"};
+        for (int n = 0; n < sides; ++n) {
+            const double turn = 2 * kPi * n / sides, x = std::cos(turn), y = std::sin(turn);
+            text += fmt::format("v {0} {1} 0\nv {0} {1} 1\nvt {0} {1}\nvt {0} {2}\n", x, y, y + 3);
+            ends[0] += fmt::format(" {}/{}", 2 * (sides - n) - 1, 2 * (sides - n) - 1);
+            ends[1] += fmt::format(" {}/{}", 2 * n + 2, 2 * n + 1);
+        }
+        for (int n = 0; n < sides; ++n) {
+            const int a = 2 * n + 1, b = 2 * ((n + 1) % sides) + 1;
+            text += fmt::format("f {0}/{0} {1}/{1} {2}/{2} {3}/{3}\n", a, b, b + 1, a + 1);
+        }
+        const TriMesh mesh =
+            read_quietly(folder.write("a.obj", text + ends[0] + "\n" + ends[1] + "\n"));
+        write_ply(folder / "a.ply", mesh);
+        const TriMesh read = read_quietly(folder / "a.ply");
+        CAPTURE(sides);
+        CHECK(read.position == mesh.position);
+        REQUIRE(read.triangle == mesh.triangle);
+        for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+            for (int k = 0; k < 3; ++k)
+                CHECK(read.uv[read.triangle_uv[t][k]] == mesh.uv[mesh.triangle_uv[t][k]]);
+    }
+}
+
+TEST_CASE("a gloss is written for programs of either kind") {
+    const Folder folder;
+    TriMesh cube = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    cube.material.resize(1);
+    cube.material[0].roughness = 0.5;
+    cube.material[0].metallic = 0.25;
+    write_obj(folder / "a.obj", cube);
+    const std::string library = test::bytes_of(folder / "a.mtl");
+    CHECK(library.find("\nNs 6\nPr 0.5\nPm 0.25\n") != std::string::npos);  // 2 / r^2 - 2
+}
+
 TEST_CASE("each face of a PLY keeps its texture, and those without have none") {
     const Folder folder;
     TriMesh cube = read_quietly(folder.write("in.obj", test::cube_obj()));

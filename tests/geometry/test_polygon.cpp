@@ -34,3 +34,39 @@ TEST_CASE("a quad with a corner that points in is cut so that both halves lie in
         CHECK((p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).z() > 0);
     }
 }
+
+TEST_CASE(
+    "a polygon with a hole, which its outline goes to and back from, is cut without the hole") {
+    const std::vector<Vec3> p = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 0},
+                                 {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 1, 0}};
+    std::vector<Corners> triangle;
+    CHECK(cut_polygon(p, triangle));
+    CHECK(triangle.size() == 8);
+    double area = 0;
+    for (const Corners& t : triangle) {
+        const double own = 0.5 * (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).z();
+        CHECK(own >= 0);
+        area += own;
+    }
+    CHECK(area == Approx(8));
+}
+
+TEST_CASE("triangles of a polygon are joined again where their corners look alike, else not") {
+    TriMesh mesh;
+    mesh.position = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    mesh.triangle = {{0, 1, 2}, {0, 2, 3}};
+    mesh.triangle_polygon = {0, 0};
+    mesh.triangle_smooth = mesh.triangle_uv = mesh.triangle;
+    mesh.smooth_group_count = 5;
+    mesh.uv.resize(5);
+    CHECK(rejoin_polygons(mesh).count() == 1);
+    TriMesh other = mesh;
+    other.triangle_smooth[1][0] = 4;
+    CHECK(rejoin_polygons(other).count() == 2);
+    other = mesh;
+    other.triangle_uv[1][1] = 4;
+    CHECK(rejoin_polygons(other).count() == 2);
+    other = mesh;
+    other.triangle_material = {0, 1};
+    CHECK(rejoin_polygons(other).count() == 2);
+}
