@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/box.h"
 
+#include "geometry/box_mesh.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -40,4 +41,21 @@ TEST_CASE("a box that has grown by another contains both, and by an empty one is
     box.grow(Box{Vec3(-1, 0.5, 0.5), Vec3(0.5, 0.5, 2)});
     CHECK(box.low == Vec3(-1, 0, 0));
     CHECK(box.high == Vec3(1, 1, 2));
+}
+
+TEST_CASE("a mesh is taken for a box where it fills the one around it, and only there") {
+    const Box box{Vec3(1, 2, 3), Vec3(2, 4, 6)};
+    TriMesh mesh = box_mesh(box);
+    REQUIRE(box_it_is(mesh));
+    CHECK(box_it_is(mesh)->high == box.high);
+    TriMesh turned = mesh;
+    for (Corners& t : turned.triangle) std::swap(t[0], t[1]);
+    CHECK_FALSE(box_it_is(turned));
+    TriMesh tetrahedron;  // of four of its corners
+    for (const int c : {0, 3, 5, 6}) tetrahedron.position.push_back(box.corner(c));
+    tetrahedron.triangle = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+    CHECK_FALSE(box_it_is(tetrahedron));
+    mesh.position.push_back(box.center());
+    CHECK_FALSE(box_it_is(mesh));
+    CHECK_FALSE(box_it_is(TriMesh()));
 }

@@ -407,6 +407,10 @@ TEST_CASE("a mesh that cannot be written leaves no library and no picture, but t
         CHECK_THROWS_AS(write(), Error);
         CHECK(std::filesystem::exists(own));
         std::filesystem::remove(own);
+        const auto library = folder.write("ball.mtl", "newmtl other\n");
+        CHECK_THROWS_AS(write(), Error);
+        CHECK(std::filesystem::exists(library));
+        std::filesystem::remove(library);
         std::filesystem::remove(folder / name);
     }
 }

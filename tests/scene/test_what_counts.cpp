@@ -187,6 +187,16 @@ TEST_CASE("a load of a stage that does nothing is told beside one of its machine
     CHECK_FALSE(has(read(pushed(one), idle).told, "does nothing"));
 }
 
+TEST_CASE("whether tools are drawn matters to grips and blades too") {
+    const auto told_with = [](const char* machine, const std::string& file = "") {
+        Parts parts = stages("[[stage]]\nmachine = \"" + std::string(machine) + "\"\n");
+        parts.rest = "[render]\ntools = false\n";
+        return read(parts, file).told;
+    };
+    for (const char* machine : {"twist", "bend", "cut"}) CHECK(told_with(machine).empty());
+    CHECK(has(told_with("./m.toml", kPush), "tools has no effect"));
+}
+
 TEST_CASE("the axes along which a grip holds are each named once") {
     const auto told_with = [](const std::string& along) {
         return read(pushed(""), kPush +
