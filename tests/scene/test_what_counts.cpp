@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where one thing that a scene says meets another: which of them counts, and what is refused.
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
+#include "base/error.h"
+#include "scene/find.h"
 #include "tests/scene/bad_scene.h"
 
 using namespace swage;
@@ -185,6 +189,48 @@ TEST_CASE("a load of a stage that does nothing is told beside one of its machine
     CHECK(read(pushed(one), kPush).told.empty());
     const std::string idle = "[[load]]\nname = \"push\"\non = \"right\"\nforce = [0, 0, 0]\n";
     CHECK_FALSE(has(read(pushed(one), idle).told, "does nothing"));
+}
+
+TEST_CASE("a load without a name is refused where its machine has one of the name it would get") {
+    const std::string named = "[[load]]\nname = \"load_1\"\non = \"right\"\npressure = 3\n";
+    CHECK(has(read(pushed("[[stage.load]]\nforce = [0, 1, 0]\n"), named).told,
+              "two parts are called \"load_1\"; give this load a name"));
+}
+
+TEST_CASE("a probe lies in its body's box") {
+    const auto told_at = [](const std::string& at) {
+        Parts parts;
+        parts.rest = "[[probe]]\nname = \"tip\"\nat = " + at + "\n";
+        return read(parts).told;
+    };
+    CHECK(told_at("[1, 0, 0.5]").empty());
+    for (const char* beside : {"[1.01, 0, 0.5]", "[0, -0.01, 0]"}) {
+        CHECK(has(told_at(beside), "each must be a fraction of the body's box, 0 to 1"));
+    }
+}
+
+TEST_CASE("the files of materials are among those that a scene is made of") {
+    const Read all = read(Parts());
+    REQUIRE(all.scene);
+    const std::vector<std::filesystem::path>& inputs = all.scene->inputs;
+    CHECK(std::any_of(inputs.begin(), inputs.end(),
+                      [](const auto& file) { return file.filename() == "materials.toml"; }));
+}
+
+TEST_CASE("a key given twice is told with the line of its own section") {
+    Parts parts;
+    parts.mesh = "[[inset]]\nname = \"lead\"\nto = [1, 1, 0.5]\n" + parts.mesh;
+    parts.material += "name = \"lead\"\n";
+    CHECK(has(read(parts).told, "\"name\" is given twice, first on line 7"));
+}
+
+TEST_CASE("a folder of assets that is not there is refused where it is named") {
+    const char* const before = std::getenv("SWAGE_ASSETS");
+    const std::string was = before != nullptr ? before : "";
+    ::setenv("SWAGE_ASSETS", "/no/such/folder", 1);
+    CHECK_THROWS_AS(find_assets(std::nullopt), Error);
+    before != nullptr ? ::setenv("SWAGE_ASSETS", was.c_str(), 1) : ::unsetenv("SWAGE_ASSETS");
+    CHECK_THROWS_AS(find_assets("/no/such/folder"), Error);
 }
 
 TEST_CASE("whether tools are drawn matters to grips and blades too") {
