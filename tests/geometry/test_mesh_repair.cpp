@@ -369,9 +369,13 @@ TEST_CASE("an open sheet is refused with what to do; beside a body it is left ou
         }
     CHECK(refusal(sheet).find("thickness") != std::string::npos);
 
-    TriMesh both = box_mesh({0, 0, -5}, {3, 3, -2});
-    append(both, sheet);
+    TriMesh both = sheet;
+    append(both, box_mesh({0, 0, -5}, {3, 3, -2}));
+    for (const Vec3& p : both.position) both.position_color.push_back(p.cast<float>());
     const Repair repair = repair_mesh(both);
+    for (std::size_t i = 0; i < repair.mesh.position.size(); ++i) {
+        CHECK(repair.mesh.position_color.at(i) == repair.mesh.position[i].cast<float>());
+    }
     CHECK(told(repair, "left out 1 open sheet"));
     CHECK(signed_volume(repair.mesh) == Approx(27));
     CHECK(repair.mesh.position.size() == 8);  // nothing stray is left to spoil the box

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include "geometry/mesh_read.h"
+#include "geometry/shown_color.h"
 #include "tests/catch.h"
+#include "tests/shared/scratch.h"
 
 using namespace swage;
 
@@ -49,6 +52,25 @@ TEST_CASE(
         area += own;
     }
     CHECK(area == Approx(8));
+}
+
+TEST_CASE("a polygon that comes back to its first corner has that once") {
+    const Scratch scratch;
+    const TriMesh mesh = read_mesh(scratch.write(
+        "a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4 1\nf 1 1 4 3 3 2 1 1\n"));
+    REQUIRE(mesh.triangle.size() == 4);
+    for (const Corners& t : mesh.triangle) CHECK(area_vector(mesh.position, t).norm() == 1);
+}
+
+TEST_CASE("places have colours of their own where no two faces show them otherwise") {
+    TriMesh mesh;
+    mesh.position = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 2, 2}};
+    mesh.triangle = {{0, 1, 2}, {0, 2, 3}};
+    mesh.triangle_material = {0, 1};
+    mesh.material.resize(2);
+    CHECK(colors_of_positions(mesh));
+    mesh.material[1].color = Vec3(0.1, 0.2, 0.3);
+    CHECK_FALSE(colors_of_positions(mesh));
 }
 
 TEST_CASE("triangles of a polygon are joined again where their corners look alike, else not") {
