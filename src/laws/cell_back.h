@@ -92,7 +92,7 @@ SWAGE_INLINE Fading<V> fading(const V& x) {  // x >= 0
     for (int k = kTerms - 2; k >= 0; --k) sum = term[k] + x * sum;
     const V mean = (1.0 + x * sum) / (1.0 + x);
     const V limit = kSmall + V{}, safe = larger(x, limit);
-    const V far = power_of_e(larger<V>(-safe, V{} - kGone)), far_mean = (1.0 - far) / safe,
+    const V far = power_of_e(larger(V(-safe), V(V{} - kGone))), far_mean = (1.0 - far) / safe,
             far_bend = (far_mean - far) / safe;
     const auto small = x < limit;
     return {small ? 1.0 - x * mean : far, small ? mean : far_mean, small ? sum : far_bend};
