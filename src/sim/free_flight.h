@@ -50,9 +50,8 @@ struct Flyer {
 };
 
 // How long such bodies, which touch nothing, fly before any can touch a tool or another, a little
-// less; no longer than
-// the leg that they are in has left where a tool moves in it [s]. `now`: of that leg, from one
-// drive to another.
+// less; no longer than the leg that they are in has left where a tool moves in it [s]. `now`: of
+// that leg, from one drive to another.
 double free_time(const std::vector<Flyer>& bodies, const Apparatus& apparatus, const Drive& from,
                  const Drive& to, const Drive& now, const Vec3& gravity);
 
