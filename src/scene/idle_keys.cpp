@@ -207,8 +207,8 @@ bool names_duration(const MachineSpec& machine) {
     };
     const auto moves_by_it = [&](const auto& parts) {
         return std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
-            return in(part.motion.turn) ||
-                   std::any_of(part.motion.move.begin(), part.motion.move.end(), in);
+            return in(part.motion.turn) || std::ranges::any_of(part.motion.move, in) ||
+                   std::ranges::any_of(part.motion.pivot, in);
         });
     };
     return moves_by_it(machine.tool) || moves_by_it(machine.grip) || moves_by_it(machine.blade) ||

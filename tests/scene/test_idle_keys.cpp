@@ -93,6 +93,26 @@ TEST_CASE("a tool's friction may go by the place of another tool") {
     CHECK(told_with("material_friction + 0*one_x").empty());
 }
 
+TEST_CASE("a duration acts on any part of a machine's motion that goes by it") {
+    const auto told_with = [](const std::string& motion) {
+        const SceneFolder scratch;
+        scratch.write("machines/turner.toml",
+                      "[[grip]]\nname = \"hold\"\nfrom = [\"-length\", \"-height\", \"-width\"]\n"
+                      "to = [\"-0.4*length\", \"height\", \"width\"]\n[grip.motion]\n" +
+                          motion + "\n");
+        const Parts parts = scene("rubber\"\n", "turner\"\nduration = \"2 s\"\n");
+        return told(read_scene(scratch.write("s.toml", parts.text()), {}, shipped()).mistakes,
+                    scratch.path());
+    };
+    CHECK(told_with("turn = \"t\"").find("duration has no effect") != std::string::npos);
+    for (const char* motion :
+         {"turn = \"t*duration/(1 s)\"", "move = [0, \"t*duration*(1 m/s)\", 0]",
+          "turn = \"t\"\npivot = [\"t*duration*(1 m/s)\", 0, 0]"}) {
+        INFO(motion);
+        CHECK(told_with(motion).find("duration has no effect") == std::string::npos);
+    }
+}
+
 TEST_CASE("a stage's key that its machine or solver does not ask is told") {
     check_all({
         {"no grip",
