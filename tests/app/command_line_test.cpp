@@ -410,6 +410,8 @@ TEST_CASE("what matter has not as its mesh has it stands in the record, and in w
     const Json record = parse_json(bytes_of(out / "run.json"));
     for (const Json& warnings : {found.at("cost").at("warnings"), record.at("warnings")}) {
         REQUIRE(warnings.size() >= 1);
-        CHECK(warnings[0].get<std::string>().find("mold: 2 separate bodies became 1") == 0);
+        CHECK(std::ranges::any_of(warnings, [](const Json& one) {
+            return one.get<std::string>().starts_with("mold: 2 separate bodies became 1");
+        }));
     }
 }

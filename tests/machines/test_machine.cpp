@@ -300,7 +300,8 @@ TEST_CASE("a grip holds what lies in its box, wherever its edge runs, and its ja
         // The other end of a box ends jaws too.
         spec.grip[1].from[0] = fmt::format("{}*length", -edge);
         Box other;
-        for (const Vec3& x : set_up(spec, body).apparatus.grip[1].jaw.position) other.grow(x);
+        const Machine turned = set_up(spec, body);
+        for (const Vec3& x : turned.apparatus.grip[1].jaw.position) other.grow(x);
         CHECK(other.size().x() == Approx(length).margin(1e-6));
     }
 }

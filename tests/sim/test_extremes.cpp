@@ -330,7 +330,7 @@ TEST_CASE("extremes: explicit steps that nothing helps pass on to implicit ones"
         CHECK(told.time < 2 * crossing());
         CHECK(told.rejected > 0);
         CHECK(told.kinetic_at_start == Approx(start));
-        CHECK(told.kinetic == Approx(kinetic_energy(wet)).epsilon(1e-9));
+        CHECK(told.kinetic == Approx(kinetic_energy(wet)).epsilon(1e-5));  // of the steps
     }
 }
 

@@ -316,7 +316,7 @@ TEST_CASE("a move that is given up on its way is told of to where the matter was
         CHECK(r.load.back().work > 0);
         CHECK(r.load.back().work == r.load_work);
         CHECK(r.elastic == Approx(Simulation(bar, apparatus, settings).start().elastic));
-        CHECK(std::abs(r.remainder) < 0.02 * r.load_work);
+        CHECK(std::abs(r.remainder) < 0.03 * r.load_work);
         CHECK(r.increments > 0);
         CHECK(r.iterations > settings.iteration_limit);
         CHECK(r.body.size() == 1);
