@@ -287,6 +287,13 @@ void join_same(const Aggregate& matter, CellParts& parts) {
     }
 }
 
+// NOTE: what only rounding has left of a number goes by the order in which meshes were cut, which
+// is not always the same; as a float it would keep all its digits, and all that follows show them.
+Eigen::Vector3f without_rounding(const Vec3& v) {
+    constexpr double kRounding = 1e-9;
+    return Vec3((v.array().abs() < kRounding).select(0.0, v)).cast<float>();
+}
+
 // Of the two that have most of a cell, as if there were no others.
 MixedCell mixed_cell(CellId cell, double whole, int most, int next, const CellParts& parts,
                      double spacing) {
@@ -299,7 +306,7 @@ MixedCell mixed_cell(CellId cell, double whole, int most, int next, const CellPa
         mixed.material[m] = static_cast<std::uint8_t>(m == 0 ? most : next);
         mixed.fill[m] = static_cast<float>(part.fill * whole / kept);
         mixed.centroid[m] =
-            Vec3(part.moment / part.fill).cwiseMax(-0.5).cwiseMin(0.5).cast<float>();
+            without_rounding((part.moment / part.fill).cwiseMax(-0.5).cwiseMin(0.5));
     }
     // The boundary's own surface tells where it looks; where none was seen, the centroids.
     Vec3 normal = one.outward - other.outward;
@@ -308,7 +315,7 @@ MixedCell mixed_cell(CellId cell, double whole, int most, int next, const CellPa
         normal = (mixed.centroid[1] - mixed.centroid[0]).cast<double>();
     }
     if (!(normal.norm() > 0)) normal = Vec3::UnitX();
-    mixed.normal = normal.normalized().cast<float>();
+    mixed.normal = without_rounding(normal.normalized());
     return mixed;
 }
 
