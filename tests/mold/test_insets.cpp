@@ -344,3 +344,21 @@ TEST_CASE("a seam within cells, between two insets, does not vanish without a wo
         CHECK(one.find("between") == std::string::npos);
     }
 }
+
+TEST_CASE("where two materials meet, what is only rounding is nothing") {
+    const TriMesh bar = box_mesh({-0.05, -0.01, -0.01}, {0.05, 0.01, 0.01});
+    const Pose about_x{Quat(Eigen::AngleAxisd(0.4, Vec3::UnitX())), Vec3::Zero()};
+    const Aggregate m =
+        with_inset(bar, moved(box_mesh({-0.03, -0.004, -0.02}, {0.04, 0.03, 0.003}), about_x), 2);
+    REQUIRE(m.mixed_cell.size() > 10);
+    int nothing = 0;
+    for (const MixedCell& cell : m.mixed_cell) {
+        for (const Eigen::Vector3f& v : {cell.normal, cell.centroid[0], cell.centroid[1]}) {
+            for (int axis = 0; axis < 3; ++axis) {
+                CHECK((v[axis] == 0 || std::abs(v[axis]) > 1e-9f));
+                nothing += v[axis] == 0;
+            }
+        }
+    }
+    CHECK(nothing > 0);
+}
