@@ -8,8 +8,9 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <tuple>
+
+#include "geometry/disjoint_sets.h"
 
 namespace swage {
 
@@ -64,14 +65,9 @@ void find_across(int axis, std::vector<WallsOfCell>& walls, const std::vector<Ce
     }
 }
 
-// Those beside each other: by square, the number of the first that it goes with.
-std::vector<int> grouped(const std::vector<Square>& square) {
-    std::vector<int> first(square.size());
-    std::iota(first.begin(), first.end(), 0);
-    const auto root = [&](int n) {
-        while (first[n] != n) n = first[n] = first[first[n]];
-        return n;
-    };
+// Those beside each other.
+DisjointSets grouped(const std::vector<Square>& square) {
+    DisjointSets groups(square.size());
     std::map<std::tuple<int, int, int, int>, int> at;
     const auto key = [&](const Square& s, int along, int by, int plane) {
         Vec3i c = s.cell;
@@ -86,14 +82,11 @@ std::vector<int> grouped(const std::vector<Square>& square) {
         for (int along : {(s.axis + 1) % 3, (s.axis + 2) % 3}) {
             for (int aside = -2; aside <= 2; ++aside) {  // a gap may stand askew
                 const auto next = at.find(key(s, along, 1, s.plane + aside));
-                if (next == at.end()) continue;
-                const auto [a, b] = std::minmax({root(static_cast<int>(n)), root(next->second)});
-                first[b] = a;
+                if (next != at.end()) groups.unite(static_cast<int>(n), next->second);
             }
         }
     }
-    for (std::size_t n = 0; n < square.size(); ++n) first[n] = root(static_cast<int>(n));
-    return first;
+    return groups;
 }
 
 }  // namespace
@@ -107,18 +100,20 @@ std::vector<FilledGap> filled_gaps(const std::vector<CellLayer>& layers, const M
     }
     std::vector<Square> square;
     for (int axis = 0; axis < 3; ++axis) find_across(axis, walls, layers, square);
-    const std::vector<int> first = grouped(square);
     struct Group {
         Vec3i low = Vec3i::Constant(std::numeric_limits<int>::max()),
               high = Vec3i::Constant(std::numeric_limits<int>::min());
+        int axis = 0;
         Vec3 bins = Vec3::Zero();
         double width = std::numeric_limits<double>::infinity();
         int count = 0;
     };
-    std::map<int, Group> groups;
+    std::vector<int> number;
+    std::vector<Group> groups(static_cast<std::size_t>(grouped(square).number_sets(number)));
     for (std::size_t n = 0; n < square.size(); ++n) {
         const Square& s = square[n];
-        Group& group = groups[first[n]];
+        Group& group = groups[number[n]];
+        group.axis = s.axis;
         group.low = group.low.cwiseMin(s.cell), group.high = group.high.cwiseMax(s.cell);
         Vec3 middle = (2 * s.cell + Vec3i::Ones()).cast<double>();
         middle[s.axis] = s.plane;
@@ -127,12 +122,10 @@ std::vector<FilledGap> filled_gaps(const std::vector<CellLayer>& layers, const M
         ++group.count;
     }
     std::vector<FilledGap> gaps;
-    for (const auto& [n, group] : groups) {
-        const int axis = square[n].axis;
+    for (const Group& group : groups) {
         const Vec3i size = group.high - group.low + Vec3i::Ones();
-        if (size[(axis + 1) % 3] < kDeep || size[(axis + 2) % 3] < kDeep) continue;
-        gaps.push_back({frame.point(group.bins / group.count),
-                        group.width * frame.spacing,
+        if (size[(group.axis + 1) % 3] < kDeep || size[(group.axis + 2) % 3] < kDeep) continue;
+        gaps.push_back({frame.point(group.bins / group.count), group.width * frame.spacing,
                         group.count * frame.spacing * frame.spacing});
     }
     std::ranges::stable_sort(gaps, std::greater<>(), &FilledGap::area);

@@ -76,6 +76,23 @@ struct DoneRun {
     }
 };
 
+// Ends a run of it by a signal as soon as anything of the stage that it is within is kept.
+Outcome end_once_kept(int signal, const fs::path& scene, const fs::path& out,
+                      const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"run",        scene.string(), "--no-render", "--out",
+                                      out.string(), "--keep-every", "0 s"};
+    words.insert(words.end(), more.begin(), more.end());
+    RunningSwage running(words, scene.parent_path());
+    while (!fs::exists(out / "resume/stage.bin") && running.is_running()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    running.signal(signal);
+    const Outcome outcome = running.wait();
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 128 + signal);
+    return outcome;
+}
+
 }  // namespace
 
 TEST_CASE("of a run that is done only what was changed is worked, to the same bytes") {
@@ -172,16 +189,7 @@ TEST_CASE("a run that ended within its first stage is gone on with after a later
     const std::string head = kMesh + metal(""),
                       first = stage("bend", "angle = \"40 deg\"\nframes = 40");
     const fs::path scene = put_scene(scratch.path(), head + first + kAtRest[2]);
-    {
-        RunningSwage running(
-            {"run", scene.string(), "--no-render", "--out", out.string(), "--keep-every", "0 s"},
-            scratch.path());
-        while (!fs::exists(out / "resume/stage.bin") && running.is_running()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        running.signal(SIGINT);
-        CHECK(running.wait().code == 128 + SIGINT);
-    }
+    end_once_kept(SIGINT, scene, out);
     put_text(scene, head + first + kAtRestToo[1]);
     const Outcome outcome = run(scene, out, {"--go-on"});
     INFO(outcome.err);
@@ -244,19 +252,7 @@ TEST_CASE("what a changed run that ended early foresees of its stages is told, a
                        {stretched, bend("10.5 cm")});
     const std::string of_new = "overhang = 10.6 cm is out of range";
     done.put({stretched, stage("twist", "angle = \"40 deg\"\nframes = 1600"), bend("10.6 cm")});
-    {
-        RunningSwage running({"run", done.scene.string(), "--no-render", "--out", done.out.string(),
-                              "--go-on", "--keep-every", "0 s"},
-                             done.scratch.path());
-        while (!fs::exists(done.out / "resume/stage.bin") && running.is_running()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        running.signal(SIGKILL);
-        const Outcome outcome = running.wait();
-        INFO(outcome.err);
-        REQUIRE(outcome.code == 128 + SIGKILL);
-        CHECK(says(outcome, of_new));
-    }
+    CHECK(says(end_once_kept(SIGKILL, done.scene, done.out, {"--go-on"}), of_new));
     const Outcome outcome = done.go_on({});
     INFO(outcome.err);
     CHECK(outcome.code == 0);
@@ -285,16 +281,7 @@ TEST_CASE("a stage that ended early leaves no materials beside those of its end"
     const fs::path out = scratch.path() / "run", meshes = out / "meshes";
     const fs::path scene = put_scene(
         scratch.path(), kMesh + metal("") + stage("cut", "name = \"my cut\"\nframes = 1600"));
-    {
-        RunningSwage running(
-            {"run", scene.string(), "--no-render", "--out", out.string(), "--keep-every", "0 s"},
-            scratch.path());
-        while (!fs::exists(out / "resume/stage.bin") && running.is_running()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        running.signal(SIGINT);
-        REQUIRE(running.wait().code == 128 + SIGINT);
-    }
+    end_once_kept(SIGINT, scene, out);
     // Nothing is cut yet, and so nothing has a colour of its own inside.
     REQUIRE(bytes_of(meshes / "my_cut.mtl").find("cut") == std::string::npos);
     const Outcome outcome = run(scene, out);
