@@ -5,16 +5,11 @@
 #include <charconv>
 
 #include "base/suggest.h"
+#include "geometry/text_scan.h"
 
 namespace swage {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-    return text;
-}
 
 std::vector<std::string> parts_of(const std::string& path) {
     std::vector<std::string> parts;

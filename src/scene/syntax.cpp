@@ -7,17 +7,11 @@
 #include "base/ascii.h"
 #include "base/suggest.h"
 #include "base/units.h"
+#include "geometry/text_scan.h"
 
 namespace swage {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-    return text;
-}
 
 bool is_key_letter(char c) { return goes_on_name(c) || c == '-' || c == '.'; }
 
