@@ -40,8 +40,6 @@ std::size_t count_of(const std::string& text, const std::string& what) {
     }
     return count;
 }
-bool says(const std::string& text, const std::string& what) { return count_of(text, what) > 0; }
-
 // All that check says.
 std::string told_of(const Bar& bar) {
     const Outcome check = bar.check();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/says.h"
 
 struct Outcome {
     int code = -1;  // exit code, or 128 + n by signal n
@@ -46,6 +47,7 @@ Outcome run_swage(const std::vector<std::string>& argument,
                   const std::filesystem::path& program = SWAGE_BINARY);
 
 using swage::test::bytes_of;
+using swage::test::says;
 // Name and bytes of every file below a folder.
 std::map<std::string, std::string> files_below(const std::filesystem::path& folder);
 bool is_whole_png(const std::string& bytes);

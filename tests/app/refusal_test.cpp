@@ -9,14 +9,6 @@
 
 namespace fs = std::filesystem;
 
-namespace {
-
-bool says(const Outcome& outcome, const std::string& words) {
-    return outcome.err.find(words) != std::string::npos;
-}
-
-}  // namespace
-
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they run without the limit
 TEST_CASE("where there is no room for threads a run is refused with 7, and nothing is unexpected") {
     const Scratch scratch;
@@ -30,7 +22,7 @@ TEST_CASE("where there is no room for threads a run is refused with 7, and nothi
         ::setrlimit(RLIMIT_AS, &before);
         INFO(mebibytes << " MiB: " << outcome.err);
         CHECK(outcome.code == 7);
-        CHECK_FALSE(says(outcome, "unexpected"));
+        CHECK_FALSE(says(outcome.err, "unexpected"));
     }
 }
 #endif
@@ -56,7 +48,7 @@ TEST_CASE("a damaged record of a run is refused with 5, and --fresh makes anothe
         put_text(record, text);
         const Outcome refused = again("--quiet");
         CHECK(refused.code == 5);
-        CHECK(says(refused, "run.json: is damaged; --fresh throws that run away"));
+        CHECK(says(refused.err, "run.json: is damaged; --fresh throws that run away"));
         CHECK(bytes_of(record) == text);
     }
     CHECK(again("--fresh").code == 0);
@@ -69,7 +61,7 @@ TEST_CASE("what cannot be a run's folder is told to be that, not to be full") {
     const Outcome refused =
         run_swage({"run", scene.string(), "--no-render", "--out", "/proc/none"});
     CHECK(refused.code == 5);
-    CHECK_FALSE(says(refused, "disk"));
+    CHECK_FALSE(says(refused.err, "disk"));
 }
 
 TEST_CASE("a run of another build is not taken for this one's, and can be drawn all the same") {
@@ -80,7 +72,7 @@ TEST_CASE("a run of another build is not taken for this one's, and can be drawn 
         return run_swage({"run", scene.string(), "--out", run.string(), "--no-render", more});
     };
     REQUIRE(again("--quiet").code == 0);
-    CHECK(says(again("--threads=1"), "already complete"));
+    CHECK(says(again("--threads=1").err, "already complete"));
     const std::string build = parse_json(bytes_of(run / "run.json")).at("build");
     CHECK(run_swage({"--version"}).out.find(build) != std::string::npos);
     for (const bool is_old : {false, true}) {  // of one that named no build, too
@@ -91,7 +83,7 @@ TEST_CASE("a run of another build is not taken for this one's, and can be drawn 
         put_text(mark, swage::json_text(json));
         const Outcome refused = again("--quiet");
         CHECK(refused.code == 8);
-        CHECK(says(refused, "another build of swage"));
+        CHECK(says(refused.err, "another build of swage"));
         CHECK(run_swage({"render", run.string(), "--no-film", "--frames", "1"}).code == 0);
         CHECK(again("--fresh").code == 0);
     }
@@ -113,10 +105,10 @@ TEST_CASE(
         };
         const Outcome nowhere = to("");
         CHECK(nowhere.code == 2);
-        CHECK(says(nowhere, "--out: \"\" is not a name"));
+        CHECK(says(nowhere.err, "--out: \"\" is not a name"));
         const Outcome refused = to(longer);
         CHECK(refused.code == 5);
-        CHECK(says(refused, longer + ": cannot be created: File name too long"));
+        CHECK(says(refused.err, longer + ": cannot be created: File name too long"));
     }
     CHECK(run_swage({"make", "bar", "--out", ""}, scratch.path()).code == 2);
     CHECK(run_swage({"verify", "stretch", "--out", ""}, scratch.path()).code == 2);

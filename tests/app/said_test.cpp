@@ -19,10 +19,6 @@ std::string loaded(const std::string& force, const std::string& fps) {
            "pressure = \"1 kPa\"\n";
 }
 
-bool says(const std::string& text, const std::string& words) {
-    return text.find(words) != std::string::npos;
-}
-
 }  // namespace
 
 TEST_CASE("loads and rates that are said in other units are the same") {

@@ -28,10 +28,6 @@ std::string told_of(const swage::TriMesh& mesh, const std::string& stages,
     return outcome.err;
 }
 
-bool says(const std::string& text, const std::string& what) {
-    return text.find(what) != std::string::npos;
-}
-
 const swage::TriMesh kBar = box_mesh({-0.05, -0.01, -0.01}, {0.05, 0.01, 0.01});
 
 }  // namespace
