@@ -24,7 +24,7 @@ constexpr int kLooks = 256;     // at a motion
 constexpr double kJump = 0.25;  // spacings, in no time
 constexpr double kNoTime = 1e-12;
 constexpr double kTurns = 1e-8;  // [rad]
-constexpr float kWhole = 0.99f;  // share of a cell
+constexpr float kFull = 0.99f;  // share of a cell
 
 std::string length_of(double value) { return quantity_text(value, Quantity::length); }
 
@@ -62,7 +62,7 @@ std::vector<Vec3> whole_middles(const Machine& machine, const Aggregate& matter)
     const Pose work_from_world = machine.frame.world_from_work.inverse();
     std::vector<Vec3> middle;
     for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
-        if (matter.cell_fill[c] < kWhole) continue;
+        if (matter.cell_fill[c] < kFull) continue;
         middle.push_back(work_from_world * cell_middle(matter, static_cast<CellId>(c)));
     }
     return middle;

@@ -33,10 +33,12 @@ double spacing_for(const TriMesh& mesh, const MoldSettings& settings) {
             fail(ExitCode::scene, "[mold] spacing is {:g} m; it must be more than 0", spacing);
         }
         if (settings.kind == MoldKind::shape && spacing > thinnest * (1 + 1e-6)) {
-            fail(ExitCode::mesh,
-                 "cannot mold: the mesh is {:.4g} m across at its thinnest side, less than the "
-                 "spacing of {:.4g} m; use spacing = \"{:.4g} m\" or less, or across = 1 or more",
-                 thinnest, spacing, thinnest);
+            throw FinenessError(
+                ExitCode::mesh,
+                fmt::format("cannot mold: the mesh is {:.4g} m across at its thinnest side, less "
+                            "than the spacing of {:.4g} m; use spacing = \"{:.4g} m\" or less, or "
+                            "across = 1 or more",
+                            thinnest, spacing, thinnest));
         }
         return spacing;
     }
@@ -133,10 +135,12 @@ void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings) {
     const auto text = [](double n) {
         return n > kTold ? "over " + count_text(kTold) : count_text(n);
     };
-    const auto refuse = [&](const std::string& sentence) {
-        fail(ExitCode::resources, "refused to mold: {} x {} x {} = {} cells of {}{}",
-             text(count.x()), text(count.y()), text(count.z()), text(cells), length_text(e.spacing),
-             sentence);
+    const auto refuse = [&](const std::string& sentence, bool is_limit = false) {
+        throw FinenessError(ExitCode::resources,
+                            fmt::format("refused to mold: {} x {} x {} = {} cells of {}{}",
+                                        text(count.x()), text(count.y()), text(count.z()),
+                                        text(cells), length_text(e.spacing), sentence),
+                            is_limit);
     };
     if (cells > kMostCells) {
         refuse(fmt::format(" are more than the {} that a mold can have: use a larger spacing",
@@ -144,10 +148,10 @@ void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings) {
     }
     const double limit = static_cast<double>(settings.cell_limit);
     if (cells > limit) {
-        refuse(
-            fmt::format(", of which about {} hold matter and take {}, are more than [mold] "
-                        "cell_limit = {}: use a larger spacing, or set cell_limit higher",
-                        count_text(e.active_cells), bytes_text(making), count_text(limit)));
+        refuse(fmt::format(", of which about {} hold matter and take {}, are more than [mold] "
+                           "cell_limit = {}: use a larger spacing, or set cell_limit higher",
+                           count_text(e.active_cells), bytes_text(making), count_text(limit)),
+               true);
     }
     const double memory = whole_memory();
     if (making > memory) {

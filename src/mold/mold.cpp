@@ -185,10 +185,11 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
 }
 
 [[noreturn]] void refuse_thin(double thickness, double spacing) {
-    fail(ExitCode::mesh,
-         "cannot mold: the mesh is about {} thick and nearly vanishes in cells of {}; use "
-         "spacing = \"{}\" or less",
-         about(thickness, 3), length_text(spacing), about(thickness, 2));
+    throw FinenessError(
+        ExitCode::mesh,
+        fmt::format("cannot mold: the mesh is about {} thick and nearly vanishes in cells of {}; "
+                    "use spacing = \"{}\" or less",
+                    about(thickness, 3), length_text(spacing), about(thickness, 2)));
 }
 
 // Of an inset that others have taken all of, nothing is left to be weighed.

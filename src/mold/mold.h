@@ -52,8 +52,19 @@ class InsetError : public Error {
     std::size_t inset_;
 };
 
+// Of cells that are too large or too small for a mesh, or too many.
+class FinenessError : public Error {
+  public:
+    FinenessError(ExitCode code, const std::string& sentence, bool is_limit = false)
+        : Error(code, sentence), is_limit_(is_limit) {}
+    bool is_limit() const { return is_limit_; }  // goes by `cell_limit` too
+
+  private:
+    bool is_limit_;
+};
+
 // Volume and mass equal the mesh's to 1e-6 at any spacing. Throws Error(mesh) when the mesh
-// encloses nothing, InsetError, Error(resources) above the limit. `told`: what is not as the mesh
+// encloses nothing, InsetError, FinenessError. `told`: what is not as the mesh
 // has it is added. `masses`: of each material [kg], of matter that is molded anew: densities give
 // way to them, and insets may reach out of the body (mold/insets.h).
 Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings,

@@ -10,7 +10,7 @@ namespace swage {
 // Of the positions that triangles use. Throws Error(mesh) without any.
 Box surface_box(const TriMesh& mesh);
 
-// Throws Error(resources) naming cells, bytes and limit.
+// Throws FinenessError(resources) naming cells, bytes and limit.
 void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings);
 
 }  // namespace swage

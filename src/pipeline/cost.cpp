@@ -359,7 +359,11 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     RunCost cost;
     std::vector<MoldEstimate> mold;
     for (std::size_t b = 0; b < input.size(); ++b) {
-        refuse_too_many_cells(input[b].to_mold(), scene.body[b].mold);
+        try {
+            refuse_too_many_cells(input[b].to_mold(), scene.body[b].mold);
+        } catch (const FinenessError& error) {
+            refuse_fineness(scene.body[b], error);
+        }
         mold.push_back(estimate_mold(input[b].to_mold(), scene.body[b].mold));
         const double across =
             cells_across(input[b].to_mold(), scene.body[b].mold.kind, mold.back());

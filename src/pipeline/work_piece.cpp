@@ -151,6 +151,13 @@ int part_skin(WorkPiece& piece) {
 
 }  // namespace
 
+void refuse_fineness(const BodySpec& body, const FinenessError& error) {
+    const bool is_limit = error.is_limit() && body.limit_place.source != nullptr;
+    const std::string of = body.name == BodySpec().name ? "" : body.name + ": ";
+    throw SceneError({mistake_at(is_limit ? body.limit_place : body.fineness_place,
+                                 of + error.what(), error.code())});
+}
+
 InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length,
                              double crease_angle) {
     InputMesh input;
@@ -235,6 +242,8 @@ Aggregate mold_with(const InputMesh& input, const BodySpec& body, const std::vec
         return mold(input.to_mold(), body.material, body.mold, insets, &findings);
     } catch (const InsetError& error) {
         refuse_inset(body.inset[error.inset()], error);
+    } catch (const FinenessError& error) {
+        refuse_fineness(body, error);
     }
 }
 

@@ -45,10 +45,13 @@ InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_ang
 // The meshes of all bodies of a scene, those of one file read once. Warns of what is found.
 std::vector<InputMesh> read_input_meshes(const SceneSpec& scene);
 
-// The body's matter, with its insets, as its mesh stands in its file. Throws as mold() does, of an
-// inset SceneError. `solids`: gets those of its insets.
+// The body's matter, with its insets, as its mesh stands in its file. Throws as mold() does, of
+// insets and fineness SceneError. `solids`: gets those of its insets.
 Aggregate mold_body(const InputMesh& input, const BodySpec& body,
                     std::vector<std::string>& findings, std::vector<TriMesh>* solids = nullptr);
+
+// As a mistake where the scene says how fine the body's cells are.
+[[noreturn]] void refuse_fineness(const BodySpec& body, const FinenessError& error);
 
 struct WorkPiece {
     std::string name, label;  // label: of its objects and looks

@@ -60,7 +60,8 @@ void read_start(TableReader& table, BodySpec& body) {
     table.choice<bool>("look", {{"file", false}, {"material", true}}, body.wears_material);
 }
 
-void read_fineness(TableReader& table, MoldSettings& mold) {
+void read_fineness(TableReader& table, BodySpec& body) {
+    MoldSettings& mold = body.mold;
     int across = kDefaultAcross;
     double spacing = 0;
     bool has_across = table.whole("across", 1, 1'000'000, across);
@@ -74,6 +75,9 @@ void read_fineness(TableReader& table, MoldSettings& mold) {
         } else {
             (sets_across ? has_spacing : has_across) = false;
         }
+    }
+    if (has_spacing || has_across) {
+        body.fineness_place = table.find(has_spacing ? "spacing" : "across")->place;
     }
     if (has_spacing) {
         if (spacing > 0) mold.spacing = spacing;
@@ -102,12 +106,15 @@ void refuse_look(TableReader& table, const BodySpec& body) {
     }
 }
 
-void read_mold(TableReader& table, MoldSettings& mold) {
+void read_mold(TableReader& table, BodySpec& body) {
+    MoldSettings& mold = body.mold;
     table.choice<MoldKind>("kind", {{"shape", MoldKind::shape}, {"block", MoldKind::block}},
                            mold.kind);
-    read_fineness(table, mold);
+    read_fineness(table, body);
     int limit = static_cast<int>(mold.cell_limit);
-    table.whole("cell_limit", 1, 1'000'000'000, limit);
+    if (table.whole("cell_limit", 1, 1'000'000'000, limit)) {
+        body.limit_place = table.find("cell_limit")->place;
+    }
     mold.cell_limit = static_cast<std::size_t>(limit);
     table.finish();
 }
@@ -152,10 +159,12 @@ void BodyReader::read(const Node& node, SceneSpec& scene) {
     body.look = scene.work_piece().look;
     body.gives_look = scene.work_piece().gives_look;
     body.mold = scene.work_piece().mold;
+    body.fineness_place = scene.work_piece().fineness_place;
+    body.limit_place = scene.work_piece().limit_place;
     read_name(table, scene, body);
     read_file(table, scene_folder_, "the mesh of the body", body.mesh);
     read_start(table, body);
-    read_fineness(table, body.mold);
+    read_fineness(table, body);
     read_material_key(table, scene, body);
     refuse_look(table, body);
     table.finish();

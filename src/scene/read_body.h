@@ -17,7 +17,7 @@ void read_mesh_section(TableReader& table, const std::filesystem::path& scene_fo
 void refuse_look(TableReader& table, const BodySpec& body);
 
 // The section [mold].
-void read_mold(TableReader& table, MoldSettings& mold);
+void read_mold(TableReader& table, BodySpec& body);
 
 // Reads the tables [[body]] of a scene whose work-piece has been read.
 class BodyReader {

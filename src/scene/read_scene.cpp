@@ -157,7 +157,7 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
         TableReader inset(*node, "[[inset]]", reading);
         work_piece.inset.push_back(read_inset(inset, assets, folder, scene.inputs));
     }
-    read_mold(mold, work_piece.mold);
+    read_mold(mold, work_piece);
     BodyReader bodies(reading, assets, folder);
     for (const Node* node : root.tables("body", "[[body]]")) bodies.read(*node, scene);
     std::set<std::string> probes;

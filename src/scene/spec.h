@@ -68,6 +68,7 @@ struct BodySpec {
     std::vector<InsetSpec> inset;
     std::vector<ProbeSpec> probe;
     MoldSettings mold;
+    Place fineness_place, limit_place;  // where the scene says how fine that is, and its limit
 
     // Of its objects and looks in files: what its mesh is called, where nobody named it.
     std::string label() const {
