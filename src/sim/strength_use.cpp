@@ -63,6 +63,17 @@ Vec3 place_of(const Aggregate& matter, CellId cell) {
     return sum;
 }
 
+// How far it has broken: grows with whatever load breaks of it.
+float how_broken(const Aggregate& matter, CellId cell, const std::array<ParticleId, 4>& row) {
+    if (!cell_has_broken(matter, cell, row)) return 0;
+    float all = 1;
+    for (const auto& c : kCellConnection) {
+        const std::vector<float>& damage = matter.connection[c.direction].damage;
+        if (!damage.empty()) all += damage[corner_particle(row, c.corner)];
+    }
+    return all;
+}
+
 }  // namespace
 
 double spring_stress(const Aggregate& matter, CellId cell, const std::array<ParticleId, 4>& row) {
@@ -98,6 +109,12 @@ StrengthUse::StrengthUse(const Aggregate& matter)
         has_strength_ = has_strength_ || of.breaks();
     }
     remember(matter);
+    if (!has_strength_ || !any_damaged(matter)) return;
+    broken_.resize(matter.cell_fill.size());
+    parallel_each(broken_.size(), kCellsPerChunk, [&](std::size_t c) {
+        const auto cell = static_cast<CellId>(c);
+        broken_[c] = how_broken(matter, cell, matter.lattice.cell_row(cell));
+    });
 }
 
 void StrengthUse::remember(const Aggregate& matter) {
@@ -170,7 +187,8 @@ void StrengthUse::look(const Aggregate& matter, const CellRun& run, std::vector<
         if (!asks_yield && !asks_strength) return;
         const bool flowed = has_flowed && matter.hardening_of(cell) > 0;
         const auto row = run.row_at(n);
-        if (asks_strength && damaged && cell_has_broken(matter, cell, row)) {
+        if (asks_strength && damaged &&
+            how_broken(matter, cell, row) > (broken_.empty() ? 0 : broken_[cell])) {
             note(most.strength, 1, cell);
         }
         bool may_yield = asks_yield, may_break = asks_strength;

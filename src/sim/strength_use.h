@@ -39,7 +39,7 @@ struct Used {
 
 class StrengthUse {
   public:
-    // What has flowed by now counts no more.
+    // What has flowed or broken by now counts no more.
     explicit StrengthUse(const Aggregate& matter);
 
     bool may_flow() const { return may_flow_; }
@@ -54,7 +54,7 @@ class StrengthUse {
 
     template <typename Io>
     void visit(Io& io) {  // what looking changes
-        io(flowed_);
+        io(flowed_, broken_);
     }
 
   private:
@@ -68,6 +68,7 @@ class StrengthUse {
     // By material, infinite: never; of the second at the least.
     std::vector<double> onset_, first_flow_;  // strain
     std::vector<float> flowed_;               // of each cell when last looked; empty: none
+    std::vector<float> broken_;               // how far each was as this began; empty: none was
     bool may_flow_, has_strength_, springs_;
 };
 

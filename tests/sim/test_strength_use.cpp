@@ -170,9 +170,10 @@ TEST_CASE("a bar uses its strength up to where it breaks, and is told to have us
     bar.start();
     StrengthUse use(bar.matter);
     bool broken = false;
-    double last = 0;
+    double last = 0, pulled = 0;
     for (int n = 1; n <= 30 && !broken; ++n) {
-        const FrameReport r = bar.pull_to(4 * 1e-3 * n / 20);
+        pulled = 4 * 1e-3 * n / 20;
+        const FrameReport r = bar.pull_to(pulled);
         broken = any_damaged(bar.matter);
         const StrengthUse::Most most = use.beyond(bar.matter, 0, 0);
         CHECK(most.yield.share == 0);
@@ -189,7 +190,12 @@ TEST_CASE("a bar uses its strength up to where it breaks, and is told to have us
     CHECK(last < 1);
     bar.pull_to(0);  // shut again
     CHECK(use.beyond(bar.matter, 0, 0).strength.share == 1);
+    // Of a later stage what was broken before counts no more, until it breaks further.
     StrengthUse later(bar.matter);
+    CHECK(later.beyond(bar.matter, 0, 0).strength.share < 0.1);
+    bar.pull_to(0.5 * pulled);
+    CHECK(later.beyond(bar.matter, 0, 0).strength.share < 0.9);
+    bar.pull_to(pulled);
     CHECK(later.beyond(bar.matter, 0, 0).strength.share == 1);
 }
 
