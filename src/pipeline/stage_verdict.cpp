@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "sim/cell_volume.h"
 #include "sim/flowed_volume.h"
 #include "sim/gripped_pieces.h"
 #include "sim/motion_guard.h"
@@ -249,6 +250,17 @@ std::string stretched(const StageEnd& end, std::size_t b) {
         end.totals.severed > 0 ? "before the cut" : "as the stage began");
 }
 
+// What has cracked does not know inside from outside.
+std::string inside_out(const StageEnd& end, const WorkPiece& piece) {
+    const std::size_t cells = cracked_inside_out(piece.matter);
+    if (cells == 0) return {};
+    return fmt::format(
+        "{} of {} that had cracked {} pressed until inside out, and {} too little since: try "
+        "less pressure, smaller cells or a greater toughness",
+        counted(cells, "cell", "cells"), name_among(end.bodies, piece), cells == 1 ? "was" : "were",
+        cells == 1 ? "bears" : "bear");
+}
+
 std::string how_to_close(Solver solver, const Books& last) {
     if (!in_motion(solver)) {
         const double by_loads = std::abs(last.load_work), by_weight = std::abs(last.gravity_work);
@@ -388,8 +400,8 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     }
     for (std::size_t b = 0; b < end.bodies.size(); ++b) {
         if (ended == StageEnded::interrupted) break;
-        for (const std::string& told :
-             {swollen(end, end.bodies[b]), stretched(end, b), shrunk(end, b)}) {
+        for (const std::string& told : {swollen(end, end.bodies[b]), stretched(end, b),
+                                        shrunk(end, b), inside_out(end, end.bodies[b])}) {
             if (!told.empty()) warn(told);
         }
     }

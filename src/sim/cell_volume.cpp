@@ -180,6 +180,19 @@ CellId first_inside_out(const Aggregate& matter) {
     return found.empty() ? -1 : found[0].id();
 }
 
+std::size_t cracked_inside_out(const Aggregate& matter) {
+    if (matter.cell_cracked.empty()) return 0;
+    std::size_t found = 0;
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            found += matter.cell_cracked[run.first + n] != 0 &&
+                     cell_is_whole(matter, run.row_at(n)) &&
+                     cell_gradient(matter, run, n).determinant() < 0;
+        }
+    }
+    return found;
+}
+
 double present_volume(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const double a = matter.lattice.spacing;

@@ -44,6 +44,9 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit);
 // The first cell that is inside out, or -1.
 CellId first_inside_out(const Aggregate& matter);
 
+// Cells that have cracked, none of whose connections is severed, and that are inside out.
+std::size_t cracked_inside_out(const Aggregate& matter);
+
 // What the matter takes up now [m3], as the laws of its cells see it. What is severed or has broken
 // has no volume of its own and counts as at molding.
 double present_volume(const Aggregate& matter);

@@ -270,3 +270,43 @@ duration = "0.291 ms"
     CHECK(outcome.code == 0);
     CHECK(fs::exists(run / "meshes/1-floor.obj"));
 }
+
+TEST_CASE("cracked cells that are turned inside out at rest are told of") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml", run = scratch.path() / "run";
+    swage::write_obj(scratch.path() / "cube.obj",
+                     box_mesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}));
+    put_text(scene, R"([mesh]
+file = "cube.obj"
+[material]
+young_modulus = 1e6
+poisson_ratio = 0.3
+density = 1000
+[[inset]]
+from = [0.1, 0.17, 0.13]
+to = [0.77, 0.71, 0.83]
+young_modulus = 1e7
+poisson_ratio = 0.2
+density = 1000
+strength = 3e5
+toughness = 20
+[mold]
+across = 4
+[[stage]]
+machine = "press"
+press = 1
+release = 0
+frames = 24
+)");
+    const auto told = [&](const char* depth) {
+        const Outcome outcome =
+            run_swage({"run", scene.string(), "--no-render", "--out", run.string(), "--fresh",
+                       "--set", std::string("stage.1.depth=") + depth});
+        CHECK(outcome.code == 0);
+        return outcome.err;
+    };
+    CHECK(!says(told("0.15"), "inside out"));  // its core has cracked
+    const std::string crushed = told("0.3");
+    INFO(crushed);
+    CHECK(says(crushed, "cells of the work-piece that had cracked were pressed until inside out"));
+}
