@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "base/interrupt.h"
@@ -317,7 +318,8 @@ void EnergySteps::keep(const Group& group, const Try& t, MoveOutcome& outcome) {
     outcome.shortest_step = std::min(outcome.shortest_step, t.step);
 }
 
-void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutcome& outcome) {
+std::string EnergySteps::take_back(const Group& group, Try& t, double budget,
+                                   MoveOutcome& outcome) {
     ++outcome.rejected;
     ++outcome.halvings;
     std::string why;
@@ -342,7 +344,7 @@ void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutco
         m.was_taken_back = true;
     }
     if (t.contact) contact_.restore(*t.contact);
-    if (!why.empty()) fail(ExitCode::stopped, "{}", why);
+    return why;
 }
 
 double EnergySteps::stable_step(const Group& group) const {
@@ -351,8 +353,49 @@ double EnergySteps::stable_step(const Group& group) const {
     return shortest;
 }
 
-void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to,
-                          MoveOutcome& outcome) {
+// All that a frame began with, to be gone back to once.
+struct EnergySteps::Begun {
+    std::vector<MovingBody::State> body{};
+    std::vector<BodyOutcome> outcome{};
+    std::vector<Vec3Array> force{};
+    std::vector<Vec3> gravity{};
+    std::shared_ptr<const BodyContact::State> contact{};
+    std::vector<ContactSums> by_contact{};
+};
+
+EnergySteps::Begun EnergySteps::begun(const MoveOutcome& outcome) {
+    Begun all;
+    all.body.resize(mover_.size());
+    all.outcome = outcome.body;
+    for (std::size_t b = 0; b < mover_.size(); ++b) {
+        mover_[b].body.save(all.body[b]);
+        all.force.push_back(mover_[b].body.force());
+        all.gravity.push_back(mover_[b].body.gravity());
+    }
+    if (contact_.acts()) all.contact = contact_.save();
+    all.by_contact = by_contact_;
+    return all;
+}
+
+void EnergySteps::put_back(Begun& begun, const Drive& from, MoveOutcome& outcome) {
+    for (std::size_t b = 0; b < mover_.size(); ++b) {
+        const bool broke = outcome.body[b].broken > begun.outcome[b].broken;
+        outcome.body[b] = begun.outcome[b];
+        mover_[b].body.restore(begun.body[b], outcome.body[b]);
+        if (broke) contact_.connections_changed(b);
+        mover_[b].body.restore_forces(std::move(begun.force[b]), begun.gravity[b]);
+    }
+    if (begun.contact) contact_.restore(*begun.contact);
+    by_contact_ = begun.by_contact;
+    for (std::size_t b = 0; b < mover_.size(); ++b) {
+        outcome.body[b].before = outcome.body[b].after = stored({b}, from)[0];
+    }
+    outcome.rejected += std::exchange(outcome.steps, 0);
+}
+
+std::optional<MoveEnd> EnergySteps::advance(const Group& group, const Drive& from, const Drive& to,
+                                            MoveOutcome& outcome) {
+    std::optional<MoveEnd> given_up;
     contact_.renew_all(all_but(group));
     meet(group, mover_[group[0]].last_step > 0 ? mover_[group[0]].last_step : stable_step(group),
          Meet::as_kept);
@@ -364,7 +407,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
         outcome.body[b].before.contact += by_contact_[b].damped;  // let go of as it began
         if (mover_[b].step == 0) mover_[b].budget = std::max(store[n].sum(), 0.0);
     }
-    for (Drive begin = from; begin.time < to.time;) {
+    for (Drive begin = from; begin.time < to.time && !given_up;) {
         throw_if_interrupted();
         const double left = to.time - begin.time, step = step_to_try(group, begin, to);
         const double end = begin.time + step;
@@ -377,7 +420,8 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
         const bool good = holds(group, t, budget);
         if (tried_ != nullptr) tried_->push_back({begin.time, t.step, t.astray, good});
         if (!good) {
-            take_back(group, t, budget, outcome);
+            const std::string why = take_back(group, t, budget, outcome);
+            if (!why.empty()) given_up = {Error(ExitCode::stopped, why), begin};
             continue;
         }
         keep(group, t, outcome);
@@ -385,6 +429,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
         begin = now;
     }
     for (std::size_t n = 0; n < group.size(); ++n) outcome.body[group[n]].after = store[n];
+    return given_up;
 }
 
 MoveOutcome EnergySteps::advance(const Drive& from, const Drive& to) {
@@ -392,7 +437,17 @@ MoveOutcome EnergySteps::advance(const Drive& from, const Drive& to) {
     outcome.body.assign(mover_.size(), BodyOutcome(apparatus_, pushes(0).count()));
     outcome.shortest_step = to.time - from.time;
     for (std::size_t b = 0; b < mover_.size(); ++b) mover_[b].body.start(from, outcome.body[b]);
-    for (const Group& group : groups(from, to)) advance(group, from, to, outcome);
+    Begun all = begun(outcome);
+    const std::vector<Group> apart = groups(from, to);
+    for (const Group& group : apart) {
+        outcome.given_up = advance(group, from, to, outcome);
+        if (!outcome.given_up) continue;
+        if (apart.size() > 1) {  // the others have got to other times
+            put_back(all, from, outcome);
+            outcome.given_up->at = from;
+        }
+        break;
+    }
     for (std::size_t b = 0; b < mover_.size(); ++b) outcome.body[b].part = mover_[b].body.load();
     return outcome;
 }

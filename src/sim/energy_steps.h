@@ -31,6 +31,8 @@
 // paper has it, they are right to the first order only.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "sim/body_contact.h"
@@ -58,7 +60,8 @@ class EnergySteps {
     EnergySteps(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                 const SimSettings& settings);
 
-    // Throws Error(stopped) when no step is short enough; the matter is then as it was before it.
+    // Given up where no step is short enough: a single group has then got to where its steps were
+    // last right, several are all back at `from`.
     MoveOutcome advance(const Drive& from, const Drive& to);
     double connections_changed(std::size_t body, const Drive& now);  // as BlockSolver's
     double elastic_energy(std::size_t body) { return mover_[body].body.elastic_energy(); }
@@ -90,16 +93,22 @@ class EnergySteps {
     };
     using Group = std::vector<std::size_t>;
     struct Try;
+    struct Begun;
     std::vector<double> held_by_contacts();
     std::vector<Group> groups(const Drive& from, const Drive& to);
-    void advance(const Group& group, const Drive& from, const Drive& to, MoveOutcome& outcome);
+    // Where it was given up.
+    std::optional<MoveEnd> advance(const Group& group, const Drive& from, const Drive& to,
+                                   MoveOutcome& outcome);
+    Begun begun(const MoveOutcome& outcome);
+    void put_back(Begun& begun, const Drive& from, MoveOutcome& outcome);
     double step_to_try(const Group& group, const Drive& begin, const Drive& to) const;
     double stable_step(const Group& group) const;
     Try take(const Group& group, const Drive& begin, const Drive& now, double step,
              const std::vector<Stored>& store, MoveOutcome& outcome);
     bool holds(const Group& group, const Try& t, double budget);
     void keep(const Group& group, const Try& t, MoveOutcome& outcome);
-    void take_back(const Group& group, Try& t, double budget, MoveOutcome& outcome);
+    // Returns why there is no shorter one to be tried, if so.
+    std::string take_back(const Group& group, Try& t, double budget, MoveOutcome& outcome);
     std::vector<char> all_but(const Group& group) const;
     void meet(const Group& group, double step, Meet how);
     std::vector<Stored> stored(const Group& group, const Drive& now);

@@ -256,6 +256,32 @@ TEST_CASE("what a stage did in motion before it stopped is told, of its first fr
                            {row["tip x [m]"], row["tip y [m]"], row["tip z [m]"]}) < 2e-3);
 }
 
+TEST_CASE("where steps that energy chooses give up, all bodies are told of one time") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "scene.toml", run = scratch.path() / "run";
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    // Two that stick without friction gain energy; another flies apart from them, by itself.
+    const bool with_another = GENERATE(false, true);
+    const std::string flies = with_another ? "3, 0, 0]\nvelocity = [0, 1, 0" : "0, 0, 0";
+    put_text(scene, "[mesh]\nfile = \"bar.obj\"\nat = [" + flies + "]\n" + kTip +
+                        "[material]\nyoung_modulus = 1e6\npoisson_ratio = 0.3\n"
+                        "density = 1000\nfriction = 0\nstickiness = 50e3\n[mold]\nacross = 1\n"
+                        "[[body]]\nfile = \"bar.obj\"\nat = [0.001, 0.011, 0.0005]\n"
+                        "velocity = [2, -1, 0]\n" +
+                        (with_another ? "[[body]]\nfile = \"bar.obj\"\nat = [0, 0, 0]\n" : "") +
+                        "[[stage]]\nmachine = \"floor\"\ndrop = 10\ngravity = 0\nframes = 5\n"
+                        "duration = 0.1\nsolver = \"energy-stepped\"\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 6);
+    auto row = last_row(run / "curves/1-floor.csv");
+    const Json stage = parse_json(bytes_of(run / "run.json")).at("stages").at(0);
+    CHECK(stage.at("unfinished_frame") == static_cast<int>(row["frame"]));
+    CHECK(distance_to_mesh(run / "meshes/1-floor-work-piece.obj",
+                           {row["tip x [m]"], row["tip y [m]"], row["tip z [m]"]}) < 2e-3);
+}
+
 TEST_CASE("a fresh run that cannot start leaves the run that was there, one that can replaces it") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 2), run = scratch.path() / "run";
