@@ -75,6 +75,19 @@ class SceneRun {
           plots_(plots_of(scene, directory_)) {}
 
     Json run() {
+        try {
+            return go_through();
+        } catch (const InterruptedRun&) {
+            throw;
+        } catch (const Interrupted& interrupted) {
+            // What is simulated has its record, however little of it is drawn.
+            if (record_.empty() || !is_simulated(record_)) throw;
+            throw InterruptedRun(interrupted, std::move(record_));
+        }
+    }
+
+  private:
+    Json go_through() {
         is_simulated_ = take_up_earlier();
         if (is_simulated_) {
             forget_what_is_within(directory_);
@@ -92,7 +105,6 @@ class SceneRun {
         return complete();
     }
 
-  private:
     std::vector<InputMesh> read_input() {
         const auto lap = watch_.lap("read");
         return read_input_meshes(scene_);
@@ -162,6 +174,8 @@ class SceneRun {
         try {
             draw();
             write_record(directory_, record_, watch_);
+        } catch (const Interrupted&) {
+            log_text("interrupted; complete files are kept");
         } catch (const std::exception& error) {
             const std::optional<Error> failure = failure_of(error);
             if (!failure) throw;

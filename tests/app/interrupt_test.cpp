@@ -58,7 +58,7 @@ TEST_CASE("a run that is asked to stop leaves only whole files within two second
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 200);
     const fs::path run = scratch.path() / "run";
-    RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path());
+    RunningSwage running({"run", scene.string(), "--out", run.string(), "--json"}, scratch.path());
     const fs::path sign = while_drawing ? run / "frames/frame_0003.png" : run / ".swage-run";
     REQUIRE(wait_for(sign, running));
     const auto asked = Clock::now();
@@ -67,9 +67,30 @@ TEST_CASE("a run that is asked to stop leaves only whole files within two second
     INFO(outcome.err);
     CHECK(std::chrono::duration<double>(Clock::now() - asked).count() < 2.5);
     CHECK(outcome.code == 128 + signal);
-    if (while_drawing) REQUIRE(fs::exists(run));
+    if (while_drawing) {
+        REQUIRE(fs::exists(run));
+        CHECK(parse_json(outcome.out) == parse_json(bytes_of(run / "run.json")));
+    }
     check_only_whole_files(run);
     CHECK_FALSE(fs::exists(run / "film.mp4"));
+}
+
+TEST_CASE("a stopped run that is asked to stop as it draws says why it had stopped") {
+    const Scratch scratch;
+    const fs::path run = scratch.path() / "run";
+    const fs::path scene =
+        put_small_scene(scratch.path(), 200,
+                        "[[stage]]\nmachine = \"hold\"\niteration_limit = 100\nframes = 1\n"
+                        "[[stage.load]]\non = \"right\"\nforce = [0, \"-20 kN\", 0]\n");
+    RunningSwage running({"run", scene.string(), "--out", run.string(), "--json"}, scratch.path());
+    REQUIRE(wait_for(run / "frames/frame_0003.png", running));
+    running.signal(SIGTERM);
+    const Outcome outcome = running.wait();
+    INFO(outcome.err);
+    CHECK(outcome.code == 6);
+    CHECK(parse_json(outcome.out).at("state") == "stopped");
+    CHECK(parse_json(outcome.out).contains("stopped"));
+    check_only_whole_files(run);
 }
 
 TEST_CASE("frames that were finished before a run was asked to stop can be drawn") {
