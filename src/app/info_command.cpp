@@ -82,13 +82,19 @@ std::string run_text(const std::string& folder, const Json& record) {
     };
     Lines lines(folder);
     lines.add("state", text_at(record, "state"));
+    if (record.contains("stopped")) lines.add("because", text_at(record, "stopped"));
     for (const Json& stage : record.value("stages", Json::array())) {
         const int first = stage.at("frames").at(0).get<int>(),
                   last = stage.at("frames").at(1).get<int>();
+        const std::string within =
+            stage.contains("unfinished_frame")
+                ? fmt::format(", and a part of frame {}", stage.at("unfinished_frame").get<int>())
+                : "";
         lines.add(text_at(stage, "name"),
-                  fmt::format("{}, {}", text_at(stage, "machine"),
+                  fmt::format("{}, {}{}", text_at(stage, "machine"),
                               last < first ? "no frame is finished"
-                                           : fmt::format("frames {} to {}", first, last)));
+                                           : fmt::format("frames {} to {}", first, last),
+                              within));
         for (const std::string& use : use_texts(stage)) lines.add(use);
     }
     for (const std::string& warning : warnings_in(record)) lines.add("warning", warning);

@@ -153,7 +153,9 @@ TEST_CASE(
     CHECK(stage.at("state") == "stopped");
     CHECK(stage.at("frames") == Json({2, 1}));  // none is there
     CHECK(stage.at("unfinished_frame") == 2);
-    CHECK(run_swage({"info", run.string()}).out.find("no frame is finished") != std::string::npos);
+    const std::string info = run_swage({"info", run.string()}).out;
+    CHECK(says(info, "no frame is finished, and a part of frame 2\n"));
+    CHECK(says(info, record.at("stopped").get<std::string>()));
     CHECK(stage.at("increments") > 0);
     CHECK(stage.at("energies_J").at("machine_work") > 0);
     CHECK(bytes_of(run / "curves/1-twist.csv").find("\n2,") != std::string::npos);
