@@ -333,7 +333,6 @@ struct ContactWay::Kernel {
                 sums.friction += 0.5 * f.friction;
                 sums.penetration = std::max(sums.penetration, at.depth());
                 ++sums.contacts;
-                sums.sliding += f.history.slides;
                 if (last.history.touches && next.soft < last.soft) {
                     const double was = k * last.soft / next.soft;
                     const double hold = way.hold_[contact.point], depth = at.depth();

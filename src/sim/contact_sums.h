@@ -17,7 +17,7 @@ struct ContactSums {
     double came = 0, goes = 0;               // power on the body before and after now [W]
     double took = 0;         // power of dashpots before now, and after they were last found
     double penetration = 0;  // of the deepest point in contact [m]
-    int contacts = 0, sliding = 0;
+    int contacts = 0;
 
     // Those of other contacts at the same time.
     void join(const ContactSums& other) {
@@ -29,7 +29,6 @@ struct ContactSums {
         took += other.took;
         penetration = std::max(penetration, other.penetration);
         contacts += other.contacts;
-        sliding += other.sliding;
     }
     // The same contacts while nothing moves.
     void freeze() { friction = damped = came = goes = took = 0; }
@@ -48,7 +47,6 @@ struct ContactSums {
         stored = next.stored;
         goes = next.goes;
         contacts = next.contacts;
-        sliding = next.sliding;
     }
 };
 

@@ -253,7 +253,6 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
         PartSum& sum = load_[pair.tool];
         sum.add(m.place - pose.translation, f.force);
         sum.penetration = std::max(sum.penetration, m.depth);
-        sum.sliding += f.history.slides;
     }
 }
 

@@ -13,7 +13,6 @@ struct PartSum {
     double size = 0;             // sum of the points' force magnitudes [N]
     double penetration = 0;      // deepest [m]
     int contacts = 0;
-    int sliding = 0;
 
     void add(const Vec3& arm, const Vec3& point_force) {
         force += point_force;

@@ -138,7 +138,6 @@ std::vector<PartSum> RestingContacts::loads(const Aggregate& matter, const Drive
         const Vec3 arm = t.place - now.world_from_tool[tool].translation;
         sum.add(arm, t.contact.force);
         sum.penetration = std::max(sum.penetration, -t.distance.value);
-        sum.sliding += t.contact.slips;
     });
     grips_.add_loads(matter, now, apparatus_->tool.size(), sums);
     return sums;
