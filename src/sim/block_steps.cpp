@@ -92,12 +92,9 @@ double BlockSolver::longest_step(const Way& way, const Drive& begin) {
     return share_ * dt;
 }
 
-double BlockSolver::move(std::size_t b, const Drive& now, double dt, long n, BodyOutcome& outcome) {
+double BlockSolver::move(std::size_t b, const Drive& now, double dt, BodyOutcome& outcome) {
     MovingBody& body = bodies_[b];
-    // NOTE: what wakes within a block (MovingBodies::wake_stirred(), and wake_neighbours() as a
-    // step ends) has its speed, nought, at the time of its place, and is due half a kick as well;
-    // it has a whole one, and goes on by half a step's acceleration too fast.
-    if (has_half_kicks()) return body.move(n == 1 ? 0.5 * dt : dt, dt);
+    if (has_half_kicks()) return body.move(body.is_in_time() ? 0.5 * dt : dt, dt);
     if (!is_implicit()) {
         const double gone = body.move(0, dt);
         body.kick(dt);
@@ -167,7 +164,7 @@ Finding BlockSolver::take(const Way& way, const Block& block, MoveOutcome& outco
         bodies_.for_all_awake([&](std::size_t b) {
             MovingBody& body = bodies_[b];
             body.begin_step(before);
-            gone[b] = move(b, now, dt, n, outcome.body[b]);
+            gone[b] = move(b, now, dt, outcome.body[b]);
             found[b] = look_at(body, gone[b], std::numeric_limits<int>::max());
             if (found[b]) return;
             body.find_forces(now, is_implicit() ? 0 : dt, outcome.body[b]);
@@ -184,7 +181,9 @@ Finding BlockSolver::take(const Way& way, const Block& block, MoveOutcome& outco
         before = now;
     }
     if (has_half_kicks()) {
-        bodies_.for_all_awake([&](std::size_t b) { bodies_[b].kick(0.5 * dt); });
+        bodies_.for_all_awake([&](std::size_t b) {
+            if (!bodies_[b].is_in_time()) bodies_[b].kick(0.5 * dt);
+        });
     }
     bodies_.end_block(outcome);
     return {};

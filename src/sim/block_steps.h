@@ -8,12 +8,12 @@
 //     v += dt f(x) / m,   x += dt v,
 //
 // its speeds half a step after its places (a half kick begins and ends each block of steps, so that
-// both stand at one time there; Stoermer and Verlet's method, of second order). All bodies take the
-// same step. For one swing of angular frequency w, one step maps (x, v dt) by a matrix of
-// determinant 1 and trace 2 - (w dt)^2: both eigenvalues stay on the unit circle, and the swing
-// bounded, while w dt < 2. Damping ratio zeta at w narrows that to w dt < 2 (sqrt(1 + zeta^2) -
-// zeta); explicit_step() takes the fastest swing of the fastest body. Contact and grip points are
-// kept below a quarter of what their carriers can follow in one step.
+// both stand at one time there, and begins what is woken within one; Stoermer and Verlet's method,
+// of second order). All bodies take the same step. For one swing of angular frequency w, one step
+// maps (x, v dt) by a matrix of determinant 1 and trace 2 - (w dt)^2: both eigenvalues stay on the
+// unit circle, and the swing bounded, while w dt < 2. Damping ratio zeta at w narrows that to w dt
+// < 2 (sqrt(1 + zeta^2) - zeta); explicit_step() takes the fastest swing of the fastest body.
+// Contact and grip points are kept below a quarter of what their carriers can follow in one step.
 //
 // Solver::euler, as the papers have it: x += dt v, v += dt f(x) / m, both of the old state. The
 // trace of the map is 2 and its determinant 1 + (w dt)^2: every undamped swing grows, at any step.
@@ -80,8 +80,8 @@ class BlockSolver {
     double first_step(double dt) const { return has_half_kicks() ? 0.5 * dt : dt; }
     // So often halved that cells may turn inside out.
     bool may_crush() const;
-    // Moves one body on by step n of a block; returns the longest way of any particle [m].
-    double move(std::size_t body, const Drive& now, double dt, long n, BodyOutcome& outcome);
+    // Moves one body on by a step of a block; returns the longest way of any particle [m].
+    double move(std::size_t body, const Drive& now, double dt, BodyOutcome& outcome);
     struct Block;
     Block next_block(const Way& way, const Drive& begin);
     void start_books(const std::vector<Stored>& before, bool again, MoveOutcome& outcome);

@@ -164,6 +164,7 @@ void MovingBody::renew_candidates(const Drive& before, const Drive& now, double 
 }
 
 double MovingBody::move(double kick, double step) {
+    in_time_ = false;
     Vec3Array &x = matter_.particle_position, &v = matter_.particle_velocity;
     const Vec3Array& f = force_;
     const Movers movers{{x.x.data(), x.y.data(), x.z.data()},

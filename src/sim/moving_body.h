@@ -39,6 +39,7 @@ class MovingBody {
     void find_candidates(const Drive& now);
     // What is done on the branches of the damping between these, and they do not store, is lost.
     void begin_block(BodyOutcome& outcome) {
+        in_time_ = true;
         block_energy_ = branch_energy();
         outcome.damped_work += block_energy_;
     }
@@ -53,6 +54,9 @@ class MovingBody {
     // where one is lost [m].
     double move(double kick, double step);
     void kick(double kick) { move(kick, 0); }
+    // Whether its speeds stand at the time of its places: until it first moves in a block, or since
+    // it was woken within one.
+    bool is_in_time() const { return in_time_; }
     // Its velocity where it flies (sim/free_flight.h) but for what it comes to touch [m/s].
     std::optional<Vec3> flight_velocity();
     const TouchPoints* touch() const { return contacts_.at_rest().pairs().touch(); }
@@ -179,6 +183,7 @@ class MovingBody {
     bool implicit_;
     bool saves_branches_;
     bool flies_;  // where nothing is near
+    bool in_time_ = true;
     // In the branches [J]: now, negative where it is not known; when the block began.
     double branch_energy_ = -1, block_energy_ = 0;
     Vec3 gravity_ = Vec3::Zero();

@@ -6,7 +6,9 @@
 #include "base/parallel.h"
 #include "sim/advance.h"
 #include "sim/internal_damping.h"
+#include "sim/moving_body.h"
 #include "tests/catch.h"
+#include "tests/sim/kinetic_energy.h"
 #include "tests/sim/motion.h"
 
 using namespace swage;
@@ -89,6 +91,55 @@ bool rests_by(const Aggregate& m, double until, double kinetic, double gravity =
     bool rests = false;
     for (int n = 0; n <= 1000; ++n) rests = watch.rests(0, until * n / 1000, kinetic);
     return rests;
+}
+
+// A block on ice that nothing damps, which trembles a little as it falls asleep; and one above it
+// that comes down, if anything does.
+struct Trembling {
+    std::unique_ptr<Ground> ground;
+    double step;  // [s]
+
+    explicit Trembling(std::optional<double> above = {}) {
+        Material springy = kSoft;
+        springy.friction = 0;
+        Ground quiet({0}, true, springy);
+        quiet.apparatus.tool[0].friction = 0;
+        quiet.settings.contact_stiffness = 0.3;  // which damped and longer steps can follow alike
+        REQUIRE(quiet.settle().asleep == 1);
+        springy.damping_ratio = 0, springy.restitution = 1;
+        std::vector<double> heights{0};
+        if (above) heights.push_back(*above);
+        ground = std::make_unique<Ground>(heights, true, springy);
+        ground->apparatus.tool[0].friction = 0;
+        ground->settings.contact_stiffness = quiet.settings.contact_stiffness;
+        ground->body[0].particle_position = quiet.body[0].particle_position;
+        shift(ground->body[0], Vec3(0, 1e-5, 0));
+        step = 0.98 * explicit_step(ground->body[0], ground->settings);
+    }
+    // Frames of so many steps each, the floor sinking by this much in each step.
+    const FrameReport& go(std::initializer_list<int> steps, double sinks = 0) {
+        for (int n : steps) {
+            ground->go(n * step, Vec3(0, -n * sinks, 0));
+            CHECK(ground->last.steps == n);
+        }
+        return ground->last;
+    }
+};
+
+Vec3 momentum(const Aggregate& m) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        sum += m.particle_mass[p] * m.particle_velocity.at(p);
+    }
+    return sum;
+}
+
+double fastest(const Aggregate& m) {
+    double most = 0;
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        most = std::max(most, m.particle_velocity.at(p).norm());
+    }
+    return most;
 }
 
 }  // namespace
@@ -242,6 +293,37 @@ TEST_CASE("what trembles, slides or creeps does not sleep") {
             REQUIRE_FALSE(watch.rests(0, 0.01 * n, 0));
         }
     }
+}
+
+TEST_CASE("what wakes within a block of steps goes on as what wakes where one begins") {
+    // By a millionth of a spacing in ten steps.
+    const double sinks = 1.01e-8;
+    Trembling within, apart;
+    REQUIRE(within.ground->settle().asleep == 1);
+    REQUIRE(apart.ground->settle().asleep == 1);
+    REQUIRE(apart.go({9}, sinks).asleep == 1);
+    CHECK(apart.go({21}, sinks).asleep == 0);
+    CHECK(within.go({30}, sinks).asleep == 0);
+    const Aggregate &one = within.ground->body[0], &other = apart.ground->body[0];
+    const double weight = one.mass() * fastest(other);
+    REQUIRE(weight > 0);
+    CHECK((momentum(one) - momentum(other)).norm() < 1e-9 * weight);
+    CHECK(kinetic_energy(one) == Approx(kinetic_energy(other)).epsilon(1e-9));
+    CHECK(heaviest_remainder(within.ground->last) ==
+          Approx(heaviest_remainder(apart.ground->last)).margin(1e-9 * weight));
+}
+
+TEST_CASE("what wakes as another comes near has not moved by the end of that step") {
+    Trembling below(48.0);
+    Ground& ground = *below.ground;
+    while (ground.time < 3.049) ground.go(0.05);
+    REQUIRE(ground.last.asleep == 1);
+    while (ground.last.asleep == 1 && ground.time < 3.2) ground.go(5e-4);
+    CHECK(ground.last.steps == 1);
+    CHECK(ground.last.asleep == 0);
+    CHECK(fastest(ground.body[0]) == 0);
+    ground.go(5e-4);
+    CHECK(fastest(ground.body[0]) > 0);
 }
 
 TEST_CASE("sleep gives equal bytes with one and two threads") {
