@@ -153,7 +153,8 @@ struct ContactWay::Kernel {
             held -= dot3(at.normal, held) * at.normal;
             const double left = dot3(held, held);
             if (left > kTurned * whole) {
-                held *= std::sqrt(2 * last.held / (k * left));
+                const double was = at.soft() < last.soft ? k * last.soft / at.soft() : k;
+                held *= std::sqrt(2 * last.held / (was * left));
             } else {
                 held = Vec4{};
                 sum.turned += last.held;
@@ -340,6 +341,7 @@ struct ContactWay::Kernel {
                         0.5 * share *
                         (0.5 * (was - k) * dot3(reach, reach) + spring_energy(was, depth, hold) -
                          spring_energy(k, depth, hold));
+                    if (meet == Meet::as_kept) way.list_.memory[n].soften(next);
                 }
             } else if (last.history.touches && at.is_known()) {
                 // What its bond does no longer on the way from there.

@@ -45,6 +45,12 @@ struct ContactMemory {
     // followed the whole.
     double soft = 1;
     bool is_new = true;  // to the surfaces as they are: its depth is not known from before
+
+    // It has become as soft where it is, which is counted once.
+    void soften(const ContactMemory& now) {
+        held = now.held, stored = now.stored, bound = now.bound;
+        stiffness = now.stiffness, soft = now.soft;
+    }
 };
 
 // Sorted by point.

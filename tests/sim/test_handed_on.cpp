@@ -150,6 +150,34 @@ TEST_CASE("what is pressed as a stage ends presses as hard in the next, whatever
     }
 }
 
+TEST_CASE(
+    "what longer steps soften as a stage begins is let go of once, and no more than it held") {
+    SimSettings fine = motion_settings(), coarse = fine;
+    fine.contact_stiffness = coarse.contact_stiffness = 20;
+    fine.step_safety = 0.05;
+    for (const double friction : {0.0, 0.3}) {
+        Material m = dull(0);
+        m.restitution = 1, m.friction = friction;
+        std::vector<Aggregate> both{make_block(3, 3, 3, 0.1, m), make_block(3, 3, 3, 0.1, m)};
+        place(both[1], {Quat::Identity(), Vec3(0.013, 0.301, 0.012)});
+        for (std::size_t p = 0; p < both[1].particle_count(); ++p) {
+            both[1].particle_velocity.set(p, Vec3(0.5, -3, 0));
+        }
+        for (int frames : {1, 6, 10, 15}) {
+            const Moved parts = moved(both, {{frames, fine}, {4, coarse}});
+            const Books &end = parts.report[std::size_t(frames) - 1],
+                        &next = parts.report[std::size_t(frames)];
+            INFO("friction " << friction << ", after " << frames << " frames");
+            REQUIRE(end.contact > 1);
+            CHECK(next.contact_at_start == Approx(end.contact).epsilon(1e-6));
+            CHECK(next.damped > 0.5 * end.contact);
+            CHECK(next.damped < end.contact);
+            const FrameReport& last = parts.report.back();
+            CHECK(std::abs(last.remainder) < 0.005 * held_at_start(last));
+        }
+    }
+}
+
 TEST_CASE("what has broken and lies on itself makes no energy where a stage begins") {
     const std::vector<Aggregate> bodies = halved(brittle());
     for (Solver solver : {Solver::explicit_steps, Solver::energy_stepped}) {
