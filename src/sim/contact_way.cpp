@@ -182,9 +182,11 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
     has_changed_ = true;
     for (ContactMemory& memory : list_.memory) memory.is_new = true;
     is_found_ = false;
-    if (!points_too || !is_near()) return;
-    keep_contacts([&](int point) { return from_->meets(point); });
-    if (is_static()) meet_anew();
+    if (!is_near()) return;
+    if (points_too) {
+        keep_contacts([&](int point) { return from_->meets(point); });
+        if (is_static()) meet_anew();
+    }
     set_stiffness(step);
 }
 
@@ -196,8 +198,12 @@ void ContactWay::set_stiffness(double step) {
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) hold_.push_back(hold * area_on(b, points, p));
     stiffest_.assign(points.size(), std::numeric_limits<double>::infinity());
+    if (!(step > 0)) return;
     // Half of which acts where the other way does as much.
-    if (step > 0) stiffest_ = stiffest_of_points(a, points, stiffness_, kMeetShare / (step * step));
+    const double most = kMeetShare / (step * step);
+    stiffest_ = is_own() ? stiffest_of_points(a, points, stiffness_, most)
+                         : stiffest_on_body(a, points, stiffness_, b, onto_->points(), scale_,
+                                            solver_, most);
 }
 
 void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {

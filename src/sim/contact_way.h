@@ -15,7 +15,7 @@
 // The point pushes back with its own weights, the cell with the trilinear weights of the same place
 // in space, so that force and moment are kept to round-off. Friction's anchors are material points
 // of the other body. All points together never make their carriers swing faster than half the way
-// to what steps can follow (stiffest_of_points()).
+// to what steps can follow, nor the body that they press on (stiffest_on_body()).
 //
 // In each step: resolve() where contacts have been found anew; then of all ways find() and press(),
 // of all push(), of all respond() and answer(); and commit() where the step is kept. Both sides'

@@ -2,6 +2,8 @@
 #include "sim/limited_stiffness.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "matter/touch_points.h"
 #include "sim/surface_forces.h"
@@ -24,13 +26,41 @@ LimitedPoints on_rigid(const Aggregate& matter, const SurfacePoints& points, dou
     return limited;
 }
 
+// s of stiffest_on_body().
+double share_borne(const Aggregate& matter, const SurfacePoints& points,
+                   const std::vector<double>& stiffness, double most) {
+    std::vector<Vec3> carried(matter.particle_count(), Vec3::Zero());
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const SurfacePoints::Carriers by = points.carriers(p);
+        for (int c = 0; c < 8; ++c) {
+            carried[by.corner[c]] +=
+                std::sqrt(stiffness[p]) * std::abs(by.weight[c]) * points.normal(p);
+        }
+    }
+    LimitedPoints limited;
+    limited.asked = stiffness;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const SurfacePoints::Carriers by = points.carriers(p);
+        const Vec3 normal = points.normal(p);
+        double row = 0;  // over the root of the point's own stiffness
+        for (int c = 0; c < 8; ++c) {
+            const double along = std::max(0.0, normal.dot(carried[by.corner[c]]));
+            row += std::abs(by.weight[c]) * along / matter.particle_mass[by.corner[c]];
+        }
+        limited.stiffest.push_back(row > 0 ? std::sqrt(stiffness[p]) * most / row
+                                           : std::numeric_limits<double>::infinity());
+    }
+    return limited.share();
+}
+
 LimitedPoints one_way(const Aggregate& from, const Aggregate& onto, const SimSettings& settings,
                       double most) {
-    const TouchPoints touch(from);
+    const TouchPoints touch(from), others(onto);
+    const double scale = settings.stiffness_of_contacts();
     LimitedPoints limited;
-    limited.asked = stiffness_on_body(from, touch.points(), onto, settings.stiffness_of_contacts(),
-                                      settings.solver);
-    limited.stiffest = stiffest_of_points(from, touch.points(), limited.asked, most);
+    limited.asked = stiffness_on_body(from, touch.points(), onto, scale, settings.solver);
+    limited.stiffest = stiffest_on_body(from, touch.points(), limited.asked, onto, others.points(),
+                                        scale, settings.solver, most);
     return limited;
 }
 
@@ -52,6 +82,19 @@ std::vector<double> stiffness_on_body(const Aggregate& from, const SurfacePoints
         stiffness.push_back(contact_stiffness * one * other / (one + other) * area);
     }
     return stiffness;
+}
+
+std::vector<double> stiffest_on_body(const Aggregate& from, const SurfacePoints& points,
+                                     const std::vector<double>& stiffness, const Aggregate& onto,
+                                     const SurfacePoints& others, double contact_stiffness,
+                                     Solver solver, double most) {
+    std::vector<double> stiffest = stiffest_of_points(from, points, stiffness, most);
+    const double share = share_borne(
+        onto, others, stiffness_on_body(onto, others, from, contact_stiffness, solver), most);
+    for (std::size_t p = 0; p < stiffest.size() && share < 1; ++p) {
+        stiffest[p] = std::min(stiffest[p], share * stiffness[p]);
+    }
+    return stiffest;
 }
 
 void LimitedPoints::add(const LimitedPoints& others) {

@@ -18,6 +18,23 @@ std::vector<double> stiffness_on_body(const Aggregate& from, const SurfacePoints
                                       const Aggregate& onto, double contact_stiffness,
                                       Solver solver);
 
+// What steps leave each of these at the most [N/m]: its carriers follow it (stiffest_of_points()),
+// and so does `onto`, whose own points would be asked as much: which of its corners will be pressed
+// on is not known, so it is what its whole surface has in the mean,
+//
+//     k_p <= s stiffness_p,   s = sum_q least(k_q, most_q) / sum_q k_q,
+//
+// q its points. They are pressed from one side at a time, and so most_q is that of springs across
+// the surface alone: in the Gram matrix of stiffest_of_points() each pair counts by n_q . n_r.
+// NOTE: place by place it would be less on edges than on faces, and what slides from one to the
+// other would have its springs softened under load. With the first bound alone a stiff, heavy body
+// pressed a light one harder than steps can follow, and a third of the light one's energy came
+// from nowhere.
+std::vector<double> stiffest_on_body(const Aggregate& from, const SurfacePoints& points,
+                                     const std::vector<double>& stiffness, const Aggregate& onto,
+                                     const SurfacePoints& others, double contact_stiffness,
+                                     Solver solver, double most);
+
 // Points that are pressed alike.
 struct LimitedPoints {
     std::vector<double> asked, stiffest;  // of each [N/m]; the second in steps of some length
