@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "geometry/disjoint_sets.h"
+#include "matter/cell_gradient.h"
 #include "matter/connections.h"
 
 namespace swage {
@@ -116,22 +117,7 @@ Vec3 Aggregate::mean_velocity() const {
 }
 
 Mat3 Aggregate::surface_gradient(std::size_t point) const {
-    const std::array<ParticleId, 8> corner = surface.corner(point);
-    const Vec3 at = surface.place(point);
-    std::array<Vec3, 8> x;
-    for (int c = 0; c < 8; ++c) x[c] = particle_position.at(corner[c]);
-    Mat3 gradient;
-    for (int axis = 0; axis < 3; ++axis) {
-        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        Vec3 slope = Vec3::Zero();
-        for (int q = 0; q < 4; ++q) {
-            const int low = (q & 1) << u | (q >> 1) << v;
-            const double share = (q & 1 ? at[u] : 1 - at[u]) * (q & 2 ? at[v] : 1 - at[v]);
-            slope += share * (x[low | 1 << axis] - x[low]);
-        }
-        gradient.col(axis) = slope / lattice.spacing;
-    }
-    return gradient;
+    return cell_gradient(*this, surface.corner(point), surface.place(point));
 }
 
 namespace {

@@ -8,6 +8,7 @@ void SurfacePoints::resize(std::size_t count) {
     place_.resize(count);
     area_.resize(count);
     normal_.resize(count);
+    if (!side_.empty()) side_.resize(count, 0xff);
 }
 
 void SurfacePoints::set(std::size_t point, const std::array<ParticleId, 4>& row, const Vec3& place,
@@ -32,9 +33,15 @@ void SurfacePoints::move(std::size_t point, const Vec3& place, double area) {
     area_[point] = area;
 }
 
+void SurfacePoints::set_side(std::size_t point, std::uint8_t corners) {
+    if (side_.empty()) side_.resize(size(), 0xff);
+    side_[point] = corners;
+}
+
 std::size_t SurfacePoints::bytes() const {
     return row_.capacity() * sizeof(row_[0]) + place_.capacity() * sizeof(place_[0]) +
-           normal_.capacity() * sizeof(normal_[0]) + area_.capacity() * sizeof(double);
+           normal_.capacity() * sizeof(normal_[0]) + area_.capacity() * sizeof(double) +
+           side_.capacity();
 }
 
 }  // namespace swage

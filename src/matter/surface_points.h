@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "matter/lattice.h"
@@ -52,6 +53,9 @@ class SurfacePoints {
     Vec3 place(std::size_t point) const { return place_[point].cast<double>(); }
     double area(std::size_t point) const { return area_[point]; }
     Vec3 normal(std::size_t point) const { return normal_[point].cast<double>(); }
+    // Corners of its cell, a bit each, that blades have left on the point's side of their paths.
+    std::uint8_t side(std::size_t point) const { return side_.empty() ? 0xff : side_[point]; }
+    void set_side(std::size_t point, std::uint8_t corners);
     Carriers carriers(std::size_t point) const {
         return {corner(point), trilinear_weights(place(point))};
     }
@@ -71,8 +75,8 @@ class SurfacePoints {
 
     template <typename Io>
     void visit(Io& io) {  // as SparseArray has it
-        auto& [row, place, normal, area] = *this;
-        io(row, place, normal, area);
+        auto& [row, place, normal, area, side] = *this;
+        io(row, place, normal, area, side);
     }
 
   private:
@@ -81,6 +85,7 @@ class SurfacePoints {
     std::vector<std::array<ParticleId, 4>> row_;
     std::vector<Eigen::Vector3f> place_, normal_;
     std::vector<double> area_;
+    std::vector<std::uint8_t> side_;  // empty: no blade has come by
 };
 
 }  // namespace swage

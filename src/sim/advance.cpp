@@ -59,10 +59,11 @@ struct WorkedBody {
     Books books{};
     bool begun = false;
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
+    std::vector<PointSide> sides{};              // of what these will part
 
     template <typename Io>
     void visit(Io& io) {
-        io(pieces, crumbs, books, begun, plan);
+        io(pieces, crumbs, books, begun, plan, sides);
     }
 };
 
@@ -174,6 +175,7 @@ int Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
     if (at.plan.empty()) {
         events = crossed(*at.matter, std::array{from, to});
         name_blades(events, *at.matter, apparatus, std::array{from, to});
+        at.sides = sides_of(*at.matter, events, swept_triangles(apparatus, std::array{from, to}));
     } else {
         events = std::move(at.plan.front());
         at.plan.pop_front();
@@ -185,6 +187,7 @@ int Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
     if (events.empty()) return 0;
     const double before = elastic(b);
     sever(*at.matter, events);
+    keep_sides(*at.matter, at.sides);
     for (const SeverEvent& e : events) ++severed[static_cast<std::size_t>(e.blade)];
     const double let_go = connections_changed(b, from);
     at.books.severed_energy += before - elastic(b) + let_go;
@@ -271,11 +274,14 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
     WorkedBody& at = rooms_->body[body];
     Aggregate ahead = *at.matter;
     at.plan.clear();
+    std::vector<SeverEvent> all;
     for (std::size_t n = 0; n + each < way.size(); n += each) {
         at.plan.push_back(rooms_->crossed(ahead, way.subspan(n, each + 1)));
         sever(ahead, at.plan.back());
         name_blades(at.plan.back(), ahead, rooms_->apparatus, way);
+        all.insert(all.end(), at.plan.back().begin(), at.plan.back().end());
     }
+    at.sides = sides_of(*at.matter, all, swept_triangles(rooms_->apparatus, way));
 }
 
 Aggregate Simulation::planned(std::size_t body) const {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "matter/cell_gradient.h"
 #include "matter/parted.h"
 #include "sim/surface_forces.h"
 #include "sim/vector_sums.h"
@@ -77,9 +78,8 @@ void LoadSet::connections_changed(const Aggregate& matter) {
     const std::vector<Centre> centre = centres(matter);
     std::vector<std::vector<Vec3>> force_at(last_.moment.size());
     if (started_) {
-        for_each_load([&](std::size_t l, const Load& load) {
-            if (!load.force.empty()) force_at[l] = moments_of(load, matter);
-        });
+        for_each_load(
+            [&](std::size_t l, const Load& load) { force_at[l] = moments_of(load, matter); });
     }
     const std::shared_ptr<const Parted> before = std::exchange(parted_, nullptr);
     bool presses = false, is_torn_somewhere = false;
@@ -88,7 +88,7 @@ void LoadSet::connections_changed(const Aggregate& matter) {
     for_each_load([&](std::size_t l, const Load& load) {
         presses = presses || load.force.empty();
         if (load.force.empty()) return;
-        parted.bearer[l] = bearers(load, matter, before ? before->bearer[l] : parted.bearer[l]);
+        parted.bearer[l] = bearers(load, matter);
         is_torn_somewhere = is_torn_somewhere || !parted.bearer[l].empty();
     });
     if (presses) {
@@ -97,6 +97,10 @@ void LoadSet::connections_changed(const Aggregate& matter) {
                       [&](std::size_t p) { parted.is_off[p] = is_parted(matter, p); });
         presses = std::find(parted.is_off.begin(), parted.is_off.end(), 1) != parted.is_off.end();
     }
+    for_each_load([&](std::size_t l, const Load& load) {
+        if (!load.force.empty() || load.closed || !presses) return;
+        parted.bearer[l] = pressed_bearers(load, matter, parted.is_off);
+    });
     if (presses || is_torn_somewhere) {
         std::vector<OpenFace> open;
         if (presses) parted.pieces = find_pieces(matter), open = laid_open(matter);
@@ -111,10 +115,29 @@ void LoadSet::connections_changed(const Aggregate& matter) {
 
 SurfacePoints::Carriers LoadSet::carriers(const Load& load, std::size_t n,
                                           const Aggregate& matter) const {
-    const std::vector<Bearer>* bearer = parted_ ? &parted_->bearer[index_of(load)] : nullptr;
-    return bearer == nullptr || bearer->empty()
-               ? matter.surface.carriers(std::size_t(load.point[n]))
-               : carriers_by((*bearer)[n], matter);
+    const PointCarriage* const bearer = bearer_of(load, n);
+    return bearer == nullptr ? matter.surface.carriers(std::size_t(load.point[n]))
+                             : bearer->carriers();
+}
+
+const PointCarriage* LoadSet::bearer_of(const Load& load, std::size_t n) const {
+    if (parted_ == nullptr) return nullptr;
+    const std::vector<PointCarriage>& all = parted_->bearer[index_of(load)];
+    return all.empty() ? nullptr : &all[n];
+}
+
+bool LoadSet::is_off(const Load& load, std::size_t n) const {
+    if (parted_ == nullptr || !load.force.empty()) return false;
+    const PointCarriage* const bearer = bearer_of(load, n);
+    return bearer != nullptr ? !bearer->is_whole : parted_->is_off[std::size_t(load.point[n])] != 0;
+}
+
+Vec3 LoadSet::area_vector(const Load& load, std::size_t n, const Aggregate& matter) const {
+    const PointCarriage* const bearer = bearer_of(load, n);
+    const auto point = static_cast<std::size_t>(load.point[n]);
+    if (bearer == nullptr) return surface_area_vector(matter, int(point));
+    return present_area<double>(cell_gradient(matter, bearer->carriers().corner, bearer->place),
+                                matter.surface.area(point) * matter.surface.normal(point));
 }
 
 std::vector<OpenFace> LoadSet::pressed(const Load& load, const SurfacePoints& surface,
@@ -144,20 +167,17 @@ void LoadSet::renew_last(const Aggregate& matter, const Parted* before,
                          const std::vector<std::vector<Vec3>>& force_at) {
     if (last_.force.empty()) return;  // not started
     for_each_load([&](std::size_t l, const Load& load) {
-        if (!load.force.empty()) {
-            const std::vector<Vec3> now = moments_of(load, matter);
-            for (std::size_t n = 0; n < now.size(); ++n) {
-                if (now[n] != force_at[l][n]) last_.moment[l][n] += now[n] - force_at[l][n];
-            }
-            return;
-        }
         const std::size_t points = load.point.size();
+        const std::vector<Vec3> now = moments_of(load, matter);
+        for (std::size_t n = 0; n < points; ++n) {
+            if (now[n] != force_at[l][n]) last_.moment[l][n] += now[n] - force_at[l][n];
+        }
+        if (!load.force.empty()) return;
         std::map<std::array<ParticleId, 4>, std::size_t> known;
         for (std::size_t n = points; n < last_.force[l].size(); ++n) {
             known[before->face[l][n - points].corner] = n;
         }
-        const std::vector<Vec3> moment = last_.moment[l], force = last_.force[l],
-                                now = moments_of(load, matter);
+        const std::vector<Vec3> moment = last_.moment[l], force = last_.force[l];
         last_.moment[l].resize(points);
         last_.force[l].resize(points);
         for (std::size_t n = points; n < now.size(); ++n) {
@@ -188,11 +208,9 @@ std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter)
     const bool presses = load.force.empty();
     const bool is_forced = !presses && load.force[0] != Vec3::Zero();
     for (std::size_t n = 0; n < load.point.size(); ++n) {
-        const int p = load.point[n];
-        const bool is_off = presses && parted_ != nullptr && parted_->is_off[p];
-        const double whole =
-            is_forced ? load.force[n].norm() : load.share_of(n) * matter.surface.area(p);
-        area.push_back(is_off ? 0 : whole);
+        const double whole = is_forced ? load.force[n].norm()
+                                       : load.share_of(n) * matter.surface.area(load.point[n]);
+        area.push_back(is_off(load, n) ? 0 : whole);
     }
     const double whole = matter.lattice.spacing * matter.lattice.spacing;
     for (const OpenFace& face : faces_of(load)) area.push_back(face.share * whole);
@@ -321,8 +339,7 @@ std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
     const std::vector<double> area = areas_of(load, matter);
     parallel_each(points, kChunk, [&](std::size_t n) {
         if (area[n] == 0) return;
-        force[n] =
-            load.share_of(n) * pressure_force(pressure, surface_area_vector(matter, load.point[n]));
+        force[n] = load.share_of(n) * pressure_force(pressure, area_vector(load, n, matter));
     });
     for (std::size_t n = 0; n < face.size(); ++n) {
         force[points + n] = pressure_force(pressure, face[n].outward(matter.particle_position));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What pushes the work-piece without being a body: the apparatus' loads, and gravity; and the work
-// that they do. Forces on the surface keep their direction; a pressure follows the surface, but for
-// that of cells no longer whole, cut or broken, whose corners belong to different sides: it presses
-// on them no more. One all round a piece presses on what was laid open instead (sim/laid_open.h).
-// What is left alone (sim/free_pieces.h) is pushed by nothing, and no work is done on it.
+// that they do. Forces on the surface keep their direction; a pressure follows the surface. On
+// cells no longer whole, cut or broken, whose corners belong to different sides, both act by whole
+// cells beside these, each on the side that its point lies on. One all round a piece leaves them
+// out and presses on what was laid open instead (sim/laid_open.h). What is left alone
+// (sim/free_pieces.h) is pushed by nothing, and no work is done on it.
 #pragma once
 
 #include <memory>
@@ -87,7 +88,8 @@ class LoadSet {
     // What has come of the surface since a blade or a crack has parted cells.
     struct Parted {
         std::vector<char> is_off;  // of each point, where anything presses: its cell is parted
-        std::vector<std::vector<Bearer>> bearer;  // of each force's points; empty: themselves
+        // Of each load's points, but for closed ones; empty: their own cells.
+        std::vector<std::vector<PointCarriage>> bearer;
         Pieces pieces;
         std::vector<std::vector<OpenFace>> face;  // of each load
 
@@ -145,6 +147,12 @@ class LoadSet {
     // What is left would drive a free body, or a piece of it, for ever, so it is taken off.
     void balance(const Load& load, const Aggregate& matter, const std::vector<double>& area,
                  std::vector<Vec3>& force) const;
+
+    // What carries the n-th of a load's points; null: its own cell.
+    const PointCarriage* bearer_of(const Load& load, std::size_t n) const;
+    bool is_off(const Load& load, std::size_t n) const;  // it presses on nothing
+    // Of its patch now [m2].
+    Vec3 area_vector(const Load& load, std::size_t n, const Aggregate& matter) const;
 
     // That the n-th of a load's points acts on.
     SurfacePoints::Carriers carriers(const Load& load, std::size_t n,

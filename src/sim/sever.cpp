@@ -153,4 +153,27 @@ void sever(Aggregate& matter, std::span<const SeverEvent> events) {
     for (const SeverEvent& e : events) matter.connection[e.direction].weight.set(e.lower, 0);
 }
 
+std::vector<PointSide> sides_of(const Aggregate& matter, std::span<const SeverEvent> events,
+                                const std::vector<Triangle>& swept) {
+    std::vector<PointSide> sides;
+    if (events.empty()) return sides;
+    const SweptSurface surface(swept, matter.lattice.spacing);
+    std::vector<char> is_end(matter.particle_count(), 0);
+    for (const SeverEvent& e : events)
+        is_end[std::size_t(e.lower)] = is_end[std::size_t(e.upper)] = 1;
+    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+        if (matter.surface.is_loose(p)) continue;
+        const std::array<ParticleId, 8> corner = matter.surface.corner(p);
+        if (std::ranges::none_of(corner, [&](ParticleId c) { return is_end[std::size_t(c)]; }))
+            continue;
+        const Vec3 at = position_on_side(matter, p);
+        int corners = matter.surface.side(p);
+        for (int c = 0; c < 8; ++c) {
+            if (surface.crosses(at, matter.particle_position.at(corner[c]))) corners &= ~(1 << c);
+        }
+        sides.push_back({static_cast<int>(p), corners});
+    }
+    return sides;
+}
+
 }  // namespace swage

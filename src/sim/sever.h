@@ -8,6 +8,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "matter/point_side.h"
 
 namespace swage {
 
@@ -38,5 +39,10 @@ void name_blades(std::span<SeverEvent> events, const Aggregate& matter, const Ap
                  std::span<const Drive> way);
 
 void sever(Aggregate& matter, std::span<const SeverEvent> events);
+
+// Of the surface's points in and beside cells that these events part the sides on which that leaves
+// them.
+std::vector<PointSide> sides_of(const Aggregate& matter, std::span<const SeverEvent> events,
+                                const std::vector<std::array<Vec3, 3>>& swept);
 
 }  // namespace swage

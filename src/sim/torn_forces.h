@@ -1,30 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces on points of the surface whose cells a blade or a crack has torn.
+// Loads on points of the surface whose cells a blade or a crack has torn.
 #pragma once
 
 #include <vector>
 
 #include "matter/aggregate.h"
-#include "matter/cell_parts.h"
 #include "matter/drive.h"
+#include "matter/point_side.h"
 
 namespace swage {
 
-// NOTE: a force on a torn cell would pull at both sides of the cut. It acts on the force's nearest
-// point that is not torn or, where there is none near, on what carries most of its own.
-struct Bearer {
-    int point = 0;                     // of the surface
-    CornerMask corners = kAllCorners;  // of its cell that carry it
+// What carries each of a force's points; empty: none is torn, and its own cells do.
+// NOTE: where a torn point has no whole cell on its side what is left of its own would be driven
+// about. Its force acts on the nearest point of the same piece that is not torn or, where there is
+// none near, on the corners on its side.
+std::vector<PointCarriage> bearers(const Load& load, const Aggregate& matter);
 
-    template <typename Io>
-    void visit(Io& io) {
-        io(point, corners);
-    }
-};
-SurfacePoints::Carriers carriers_by(const Bearer& bearer, const Aggregate& matter);
-
-// Of each of a force's points; empty: none is torn. `before`: as they were before more was torn.
-std::vector<Bearer> bearers(const Load& load, const Aggregate& matter,
-                            const std::vector<Bearer>& before);
+// Of a pressure, whose points `is_off` tells to be parted; what no whole cell carries has no area
+// to press on.
+std::vector<PointCarriage> pressed_bearers(const Load& load, const Aggregate& matter,
+                                           const std::vector<char>& is_parted);
 
 }  // namespace swage

@@ -68,6 +68,7 @@ WorkPiece piece_that_went_through_all(SkinKind skin) {
             m.connection[span.direction].damage[lower] = 1;
         }
     }
+    m.surface.set_side(3, 0x0f);
     m.cell_cracked.assign(cells, 0);
     m.cell_cracked[5] = 1;
     CellSet set{7, {}};
@@ -143,6 +144,7 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
         // What bytes would not tell if it were left out of them.
         CHECK(after.name == before.name);
         CHECK(after.finding == before.finding);
+        CHECK(after.matter.surface.side(3) == 0x0f);
         CHECK(after.is_torn);
         CHECK(after.is_parted);
         CHECK(after.position == before.position);

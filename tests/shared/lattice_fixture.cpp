@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/shared/lattice_fixture.h"
 
+#include "matter/point_side.h"
+
 namespace swage::test {
 
 Vec3 gradient_of(const Distance& distance, const Vec3& at, double reach) {
@@ -61,6 +63,16 @@ Aggregate make_shape(const Distance& distance, const Vec3& low, const Vec3i& cou
 void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
                  const std::function<bool(const Vec3&)>& where) {
     const Vec3 on_plane = point + m.lattice.spacing * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+    std::vector<PointSide> sides;
+    for (std::size_t p = 0; p < m.surface.size() && !where; ++p) {
+        const bool above = normal.dot(position_on_side(m, p) - on_plane) >= 0;
+        int corners = m.surface.side(p);
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 x = m.particle_position.at(m.surface.corner(p)[c]);
+            if ((normal.dot(x - on_plane) >= 0) != above) corners &= ~(1 << c);
+        }
+        sides.push_back({int(p), corners});
+    }
     for (const Span& span : m.lattice.span) {
         for (int n = 0; n < span.count; ++n) {
             const Vec3 a = m.particle_position.at(span.lower + n);
@@ -71,6 +83,7 @@ void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
             }
         }
     }
+    keep_sides(m, sides);
 }
 
 void deform(Aggregate& m, const std::function<Vec3(const Vec3&)>& map) {

@@ -55,13 +55,12 @@ TEST_CASE("where less of the matter is pushed from now on, nothing has gone any 
     const auto start = sums();
     for (const LoadSum& one : start) CHECK(one.jump.isZero(0));
 
-    // Pressed cells that are cut press no more; what a force has on such acts on whole ones near by.
+    // What lies on cells that are cut acts where it did.
     sever_plane(matter, Vec3(0.126, 0, 0), Vec3::UnitX());
     loads.connections_changed(matter);
     const auto cut = sums();
     check_way(start, cut, Vec3::Zero());
-    CHECK(cut[2].jump.norm() > 1e-3);
-    CHECK(cut[0].jump.norm() < 0.1);
+    for (int n : {0, 2}) CHECK(cut[n].jump.norm() < 1e-6);
     shift({0.01, 0.02, 0.03});
     check_way(start, sums(), {0.01, 0.02, 0.03});
 

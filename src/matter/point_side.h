@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points of the true surface beside a cut or a crack, by what is left on their own side.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "matter/cell_parts.h"
+
+namespace swage {
+
+// A cell and a place in it or beyond. Where that has no whole cell on its side some corners of its
+// own carry it, by their shares.
+struct PointCarriage {
+    std::array<ParticleId, 4> row{};
+    Vec3 place = Vec3::Zero();
+    CornerMask corners = kAllCorners;
+    bool is_whole = true;  // the cell
+
+    SurfacePoints::Carriers carriers() const;
+    Vec3 position(const Aggregate& matter) const;  // now [m]
+
+    template <typename Io>
+    void visit(Io& io) {
+        io(row, place, corners, is_whole);
+    }
+};
+
+// By a whole cell its own corners carry a point. Of one that is parted these would hold together
+// what is not: a whole cell beside it does that hangs together with the corners on the point's
+// side, by weights that keep force and moment. Where no blade has told sides, as of a crack, the
+// new surface lies half-way.
+PointCarriage carriage_on_side(const Aggregate& matter, std::size_t point);
+
+// The corners of a point's cell on its side of a surface that parts that.
+struct PointSide {
+    using IsPlain = PointSide;
+    int point;
+    int corners;  // a bit each
+};
+// Those of points whose cells are parted by now, and takes them off the list.
+void keep_sides(Aggregate& matter, std::vector<PointSide>& sides);
+
+// By what carries it there, now [m].
+Vec3 position_on_side(const Aggregate& matter, std::size_t point);
+// As Aggregate has it; none where no whole cell tells it.
+Mat3 gradient_on_side(const Aggregate& matter, std::size_t point);
+
+}  // namespace swage
