@@ -7,7 +7,7 @@
 
 #include "geometry/disjoint_sets.h"
 #include "laws/pressure.h"
-#include "matter/parted.h"
+#include "matter/point_side.h"
 
 namespace swage {
 
@@ -86,7 +86,7 @@ Box patch_box(const Aggregate& matter, const Mat3& frame_from_world, std::size_t
     const double width = half * std::min(1.0, std::sqrt(matter.surface.area(point) * steep) / half);
     Vec3 size = Vec3::Constant(width);
     size[steepest] = std::min(half, width * (normal.sum() - steep) / steep);
-    const Mat3 along = frame_from_world * matter.surface_gradient(point) * size.asDiagonal();
+    const Mat3 along = frame_from_world * gradient_on_side(matter, point) * size.asDiagonal();
     const Vec3 reach = 0.5 * along.cwiseAbs().rowwise().sum();
     return {in_frame - reach, in_frame + reach};
 }
@@ -116,7 +116,7 @@ SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
         }
         if (side != Side::all) {
             const Vec3 normal =
-                present_area<double>(matter.surface_gradient(p), matter.surface.normal(p));
+                present_area<double>(gradient_on_side(matter, p), matter.surface.normal(p));
             if (side_of(work_from_world * normal) != side) continue;
         }
         part.point.push_back(static_cast<int>(p));
@@ -130,9 +130,9 @@ SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
 double patch_area(const Aggregate& matter, std::size_t point) {
     constexpr double kRounded = 1e-6;  // what is not strained keeps the area that it has to the bit
     const double area = matter.surface.area(point);
-    if (matter.surface.is_loose(point) || is_parted(matter, point)) return area;
+    if (matter.surface.is_loose(point)) return area;
     const double stretch =
-        present_area<double>(matter.surface_gradient(point), matter.surface.normal(point)).norm();
+        present_area<double>(gradient_on_side(matter, point), matter.surface.normal(point)).norm();
     return std::abs(stretch - 1) < kRounded ? area : stretch * area;
 }
 
@@ -153,7 +153,7 @@ std::vector<SurfaceComponent> components_of(const Aggregate& matter, const Surfa
         const double area = part.share_of(n) * patch_area(matter, p);
         SurfaceComponent& component = components[std::size_t(set_of[n])];
         component.area += area;
-        component.middle += area * matter.surface_position(p);
+        component.middle += area * position_on_side(matter, p);
     }
     for (SurfaceComponent& one : components) {
         if (one.area > 0) one.middle /= one.area;

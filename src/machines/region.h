@@ -25,7 +25,7 @@ double share_within(const Box& patch, const Box& region);
 SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
                         const std::vector<Vec3>& in_work, Side side, const Box* box);
 
-// Of the patch now; of one whose cell is parted as it was molded [m2].
+// Of the patch now; of one that no whole cell carries as it was molded [m2].
 double patch_area(const Aggregate& matter, std::size_t point);
 
 // A part of a surface that hangs together.

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "machines/machine.h"
+#include "matter/point_side.h"
 
 namespace swage {
 
@@ -14,7 +15,7 @@ constexpr double kAsLong = 0.99;
 
 std::vector<Vec3> surface_positions(const Aggregate& matter) {
     std::vector<Vec3> points(matter.surface.size());
-    for (std::size_t p = 0; p < points.size(); ++p) points[p] = matter.surface_position(p);
+    for (std::size_t p = 0; p < points.size(); ++p) points[p] = position_on_side(matter, p);
     return points;
 }
 
