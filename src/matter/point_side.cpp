@@ -6,6 +6,7 @@
 
 #include "matter/cell_gradient.h"
 #include "matter/parted.h"
+#include "matter/point_on_piece.h"
 
 namespace swage {
 
@@ -80,36 +81,14 @@ std::vector<ParticleId> and_beside(const Aggregate& matter, const Vec3i& site,
     return more;
 }
 
-}  // namespace
-
-SurfacePoints::Carriers PointCarriage::carriers() const {
-    SurfacePoints::Carriers by{corners_of(row), trilinear_weights(place)};
-    if (corners == kAllCorners) return by;
-    constexpr double kLeast = 1e-3;
-    double sum = 0;
-    for (int c = 0; c < 8; ++c) {
-        by.weight[c] = corners >> c & 1 ? std::max(by.weight[c], 0.0) + kLeast : 0;
-        sum += by.weight[c];
-    }
-    for (double& weight : by.weight) weight /= sum;
-    return by;
-}
-
-Vec3 PointCarriage::position(const Aggregate& matter) const {
-    const SurfacePoints::Carriers by = carriers();
-    Vec3 x = Vec3::Zero();
-    for (int c = 0; c < 8; ++c) x += by.weight[c] * matter.particle_position.at(by.corner[c]);
-    return x;
-}
-
 // Of the whole cells that by which a force grows least, a firm one where there is any.
-PointCarriage carriage_on_side(const Aggregate& matter, std::size_t point) {
+PointCarriage carriage_by(const Aggregate& matter, std::size_t point, CornerMask side) {
     constexpr int kReach = 2;  // cells: a slanted cut leaves what it only grazes without one beside
     const SurfacePoints& surface = matter.surface;
     const PointCarriage own{surface.row(point), surface.place(point)};
     if (!is_parted(matter, point)) return own;
     const SurfacePoints::Carriers by = surface.carriers(point);
-    const CornerMask corners = own_corners(matter, by.corner, by.weight, surface.side(point));
+    const CornerMask corners = own_corners(matter, by.corner, by.weight, side);
     std::vector<ParticleId> on_side;
     for (int c = 0; c < 8; ++c) {
         if (corners >> c & 1) on_side.push_back(by.corner[c]);
@@ -135,6 +114,43 @@ PointCarriage carriage_on_side(const Aggregate& matter, std::size_t point) {
         });
     }
     return best;
+}
+
+}  // namespace
+
+SurfacePoints::Carriers PointCarriage::carriers() const {
+    SurfacePoints::Carriers by{corners_of(row), trilinear_weights(place)};
+    if (corners == kAllCorners) return by;
+    constexpr double kLeast = 1e-3;
+    double sum = 0;
+    for (int c = 0; c < 8; ++c) {
+        by.weight[c] = corners >> c & 1 ? std::max(by.weight[c], 0.0) + kLeast : 0;
+        sum += by.weight[c];
+    }
+    for (double& weight : by.weight) weight /= sum;
+    return by;
+}
+
+Vec3 PointCarriage::position(const Aggregate& matter) const {
+    const SurfacePoints::Carriers by = carriers();
+    Vec3 x = Vec3::Zero();
+    for (int c = 0; c < 8; ++c) x += by.weight[c] * matter.particle_position.at(by.corner[c]);
+    return x;
+}
+
+PointCarriage carriage_on_side(const Aggregate& matter, std::size_t point) {
+    return carriage_by(matter, point, matter.surface.side(point));
+}
+
+PointCarriage carriage_on_piece(const Aggregate& matter, std::size_t point, const Pieces& pieces,
+                                int piece) {
+    const std::array<ParticleId, 8> corner = matter.surface.corner(point);
+    CornerMask of_piece = 0;
+    for (int c = 0; c < 8; ++c) {
+        of_piece |= (pieces.particle_piece[std::size_t(corner[c])] == piece) << c;
+    }
+    const CornerMask side = matter.surface.side(point), both = side & of_piece;
+    return carriage_by(matter, point, both != 0 ? both : of_piece != 0 ? of_piece : side);
 }
 
 void keep_sides(Aggregate& matter, std::vector<PointSide>& sides) {

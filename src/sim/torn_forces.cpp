@@ -6,13 +6,42 @@
 
 #include "base/parallel.h"
 #include "matter/parted.h"
+#include "matter/point_on_piece.h"
 
 namespace swage {
 
 namespace {
 
 constexpr std::size_t kChunk = 1024;
-constexpr double kNear = 2;  // spacings, as molded
+constexpr double kNear = 2;      // spacings, as molded
+constexpr double kHalf = 0.501;  // of a patch, and what rounding adds
+
+// NOTE: a box that ends at a cut may leave less than half of a patch, whose middle then lies beyond
+// both: that part is on the side of the load's patches next to it.
+void keep_to_the_rest(const Load& load, const Aggregate& matter, const std::vector<char>& is_parted,
+                      std::vector<PointCarriage>& bearer) {
+    const auto is_little = [&](std::size_t n) { return load.share_of(n) < kHalf; };
+    Pieces pieces;
+    const auto piece_of = [&](const PointCarriage& by) {
+        const int corner = std::countr_zero(by.corners);
+        return pieces.particle_piece[std::size_t(corner_particle(by.row, corner))];
+    };
+    for (std::size_t n = 0; n < bearer.size(); ++n) {
+        if (!is_parted[n] || !is_little(n)) continue;
+        const Vec3 at = matter.surface_reference(std::size_t(load.point[n]));
+        double nearest = matter.lattice.spacing;
+        std::size_t next = n;
+        for (std::size_t m = 0; m < bearer.size(); ++m) {
+            if (is_little(m)) continue;
+            const double far = (matter.surface_reference(std::size_t(load.point[m])) - at).norm();
+            if (far < nearest) nearest = far, next = m;
+        }
+        if (next == n) continue;
+        if (pieces.count == 0) pieces = find_pieces(matter);
+        bearer[n] =
+            carriage_on_piece(matter, std::size_t(load.point[n]), pieces, piece_of(bearer[next]));
+    }
+}
 
 // Of the load's points those that are parted by the cells on their side.
 std::vector<PointCarriage> on_sides(const Load& load, const Aggregate& matter,
@@ -23,6 +52,7 @@ std::vector<PointCarriage> on_sides(const Load& load, const Aggregate& matter,
         bearer[n] = is_parted[n] ? carriage_on_side(matter, p)
                                  : PointCarriage{matter.surface.row(p), matter.surface.place(p)};
     });
+    if (!load.share.empty()) keep_to_the_rest(load, matter, is_parted, bearer);
     return bearer;
 }
 

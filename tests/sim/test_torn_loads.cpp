@@ -104,6 +104,28 @@ TEST_CASE("within a cell of a blade a force moves the side on which it lies, and
     CHECK((side[is_left ? 0 : 1] - push).norm() < 1e-9);
 }
 
+TEST_CASE("a box that ends at a cut loads one side alone, however little it leaves of a patch") {
+    // A patch from 0.05 to 0.1: its middle lies on the left, and what is loaded on the right.
+    Aggregate matter = make_block(6, 3, 3, 0.1, kSoft);
+    const double cut = 0.08;
+    for (const bool presses : {false, true}) {
+        Aggregate halved = matter;
+        Apparatus apparatus = pushed_above(halved, 0.06, 0.3);
+        Load& load = apparatus.load[0];
+        if (presses) load.force.clear(), load.pressure = 100;
+        for (int p : load.point) {
+            const bool is_cut_off = halved.surface_reference(std::size_t(p)).x() < 0.1;
+            load.share.push_back(is_cut_off ? 0.4 : 1);
+        }
+        LoadSet loads(apparatus, {});
+        sever_plane(halved, Vec3(cut, 0, 0), Vec3::UnitX());
+        loads.connections_changed(halved);
+        const std::array<Vec3, 2> side = borne(halved, loads, drive_of(apparatus, 1, 1));
+        CHECK(side[0].norm() < 1e-12);
+        CHECK(side[1].norm() > 1);
+    }
+}
+
 TEST_CASE("a pressure presses a side of a cut up to the cut, and not the other") {
     for (const double cut : {0.02, 0.05, 0.08}) {
         CAPTURE(cut);
