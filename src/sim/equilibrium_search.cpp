@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNudge = 0.02;  // spacings: the least that a body that buckles is moved
 constexpr int kMostTurns = 4;
-constexpr double kDriven = 0.03;  // of what drives a body that buckles may be left over
+constexpr double kDriven = 0.03;  // of what drives a body along as it buckles may be left over
 constexpr double kFinest = 1e-4;  // of the tolerance: less is never asked for
 constexpr double kWithin = 0.1;   // of a motion along the surface: what it goes across
 constexpr double kAstray = 0.01;  // of the way that the body has gone
@@ -63,9 +63,11 @@ NewtonProblem buckling_problem(StaticForces& forces, const Drive& to, double acc
 }
 
 // To either side along this way, as far as the forces drive the body there, with the drag that it
-// was found to give way by. Returns false, and leaves it, where they do to neither.
-bool go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
+// was found to give way by. Returns what drives it along that way, where it gets to, as a residual;
+// 0, and leaves it, where they drive it to neither side.
+double go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
     Vec3Array& x = forces.matter.particle_position;
+    const std::vector<double>& mass = forces.matter.particle_mass;
     const double a = forces.matter.lattice.spacing, longest = longest_of(way);
     const Vec3Array from = x;
     const double hold = std::exchange(forces.hold, little_hold(forces));
@@ -79,9 +81,17 @@ bool go_along(StaticForces& forces, const Drive& to, const Vec3Array& way) {
     if (work_at(-far) > work_at(far)) far = -far;
     const bool driven = work_at(far) > 0;
     while (driven && std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
+    const double work = work_at(driven ? far : 0);
     forces.hold = hold;
-    work_at(driven ? far : 0);
-    return driven;
+    if (!driven) return 0;
+    // The rest is what a straight way has strained, which goes at once, and is far more.
+    const double size =
+        chunked_sum(way.size(), [&](std::size_t p) { return mass[p] * way.at(p).squaredNorm(); });
+    Vec3Array drive = way;
+    for (std::size_t p = 0; p < way.size(); ++p) {
+        drive.set(p, work / size * mass[p] * way.at(p));
+    }
+    return forces.residual_of(drive, to);
 }
 
 // Whether it takes the matter round within its shape, as it would a ball between smooth plates: of
@@ -239,10 +249,11 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         if (keeps_the_shape(matter, newton_->softest_motion())) break;
         ++turn;
         // The forces know more than the tangent does: how a pressure turns with the surface.
-        if (!go_along(forces, move.to, newton_->softest_motion())) break;
+        const double drive = go_along(forces, move.to, newton_->softest_motion());
+        if (!(drive > 0)) break;
         move.rest = x;
-        again(std::clamp(kDriven * forces.residual_of(forces.force, move.to), kFinest * tolerance_,
-                         tolerance_));
+        newton_rests_ = 0;  // it may have failed for what gives way here
+        again(std::clamp(kDriven * drive, kFinest * tolerance_, tolerance_));
         // What falls far takes long.
         for (int more = 0; more < kMostTurns && !result.converged; ++more) {
             move.rest = x;

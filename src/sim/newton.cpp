@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/newton.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/interrupt.h"
@@ -15,8 +16,6 @@ constexpr int kMostSteps = 60, kMostFalling = 300;
 constexpr int kMostIterations = 400;  // of conjugate gradients
 constexpr int kKeptSteps = 3;         // that coarse matrices serve in one solution
 constexpr int kMostTries = 12;        // of the length of a step
-constexpr int kUnwatched = 3;         // increments without a look at the softest motion, at most
-constexpr double kHaste = 1.5;        // times as far as before they may go
 constexpr struct {
     double geometric, firmer;  // by a share of the diagonal
 } kPrepared[] = {{1, 0}, {0, 0}, {0, 0.01}, {0, 0.1}};
@@ -167,7 +166,12 @@ double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool
     const bool bends = falls_ && !turns && find_bend(matter, problem);
     const Way way = way_of(matter, turns);
     Vec3Array& x = matter.particle_position;
-    double share = bends ? std::min(1.0, kFarthest * extent_ / longest_of(direction_)) : 1;
+    double share = 1;
+    if (bends) {
+        // Where its square takes it farther than the way itself, that says nothing any more.
+        const double far = longest_of(direction_);
+        share = std::min({1.0, kFarthest * extent_ / far, far / longest_of(bent_)});
+    }
     for (int n = 0; n < kMostTries; ++n) {
         const Mat3 turned = turn_by(share * way.turn).toRotationMatrix();
         for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
@@ -215,12 +219,6 @@ bool Newton::find_bend(Aggregate& matter, const NewtonProblem& problem) {
 }
 
 bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
-    const double gone = farthest_move(looked_at_, matter.particle_position);
-    if (unwatched_ > 0 && prepared_.points == problem.held.size() && gone <= unwatched_way_) {
-        --unwatched_;
-        ++since_;
-        return false;
-    }
     tangent_.moved();
     if (!prepared_.is_for(problem, matter) && !prepare(matter, problem, true)) return false;
     const auto times = [&](double geometric) {
@@ -229,20 +227,10 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
         };
     };
     const SoftMode::Map exact = times(1), prepared = times(prepared_.kind.geometric);
-    const double quotient = softest_.follow(
+    firmness_ = softest_.follow(
         matter.particle_position, matter.particle_mass, free_motions(matter, problem.held), exact,
         [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
-    // Looked at again when half of what is left could have gone, if increments stay what they are.
-    const double fall = (firmness_ - quotient) / (since_ + 1);
-    unwatched_ = since_ < 0 || firmness_ < 0 ? 0
-                 : 2 * kUnwatched * fall < quotient
-                     ? kUnwatched
-                     : static_cast<int>(std::max(0.5 * quotient / fall, 0.0));
-    unwatched_way_ = unwatched_ > 0 ? kHaste * unwatched_ * gone / (since_ + 1) : 0;
-    looked_at_ = matter.particle_position;
-    firmness_ = quotient;
-    since_ = 0;
-    if (!(quotient < 0)) return false;
+    if (!(firmness_ < 0)) return false;
     // A motion that does not strain the matter is no buckling, nor is one that hardly falls.
     times(0)(softest_.motion(), image_);
     const double material = dot(softest_.motion(), image_);
@@ -295,7 +283,6 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
             prepared_.is_stale = true;
         }
     }
-    if (falls_) unwatched_ = 0;  // its softest motion is another by now
     return result;
 }
 

@@ -54,8 +54,7 @@ class Newton {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(multigrid_, falls_, prepared_, softest_, firmness_, since_, unwatched_, unwatched_way_,
-           looked_at_);
+        io(multigrid_, falls_, prepared_, softest_, firmness_);
     }
 
   private:
@@ -100,11 +99,7 @@ class Newton {
     bool falls_ = false;  // some direction has had negative curvature
     Prepared prepared_;
     SoftMode softest_;
-    double firmness_ = 0;       // of the softest motion, when last looked at
-    int since_ = -1;            // increments since then; -1: never looked
-    int unwatched_ = 0;         // increments that need no look at it
-    double unwatched_way_ = 0;  // that anything may go in these [m]
-    Vec3Array looked_at_;       // positions, when last looked at
+    double firmness_ = 0;  // of the softest motion, when last looked at
     Vec3Array force_, direction_, residual_, search_, image_, better_, from_, bent_;
 };
 
