@@ -168,9 +168,11 @@ double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool
     Vec3Array& x = matter.particle_position;
     double share = 1;
     if (bends) {
-        // Where its square takes it farther than the way itself, that says nothing any more.
         const double far = longest_of(direction_);
-        share = std::min({1.0, kFarthest * extent_ / far, far / longest_of(bent_)});
+        share = std::min(1.0, kFarthest * extent_ / far);
+        // Where its square takes it farther than the way itself, that says nothing any more. NOTE:
+        // matter that flows and only softens for a while would take many short steps for it.
+        if (problem.gives_way) share = std::min(share, far / longest_of(bent_));
     }
     for (int n = 0; n < kMostTries; ++n) {
         const Mat3 turned = turn_by(share * way.turn).toRotationMatrix();

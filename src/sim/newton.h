@@ -26,6 +26,7 @@ struct NewtonProblem {
     std::function<std::vector<HeldPoint>()> held_now;
     std::vector<double> diagonal;  // of each particle, no less than its stiffness [N/m]
     std::vector<double> drag;      // springs to where the particles began [N/m]
+    bool gives_way = false;        // as a body that has buckled does: it may fall far
 };
 
 class Newton {
