@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
+#include <set>
 
 #include "geometry/mesh_check.h"
 #include "pipeline/signals.h"
@@ -67,46 +67,97 @@ PieceTrack::PieceTrack(const FrameStore& store, const std::vector<NamedPieces>& 
     for (std::size_t b = 0; b < last.size(); ++b) {
         if (!last[b]) continue;
         steps[b].back().volume = last[b]->volume();
-        const std::vector<int>& shell = last[b]->shells.triangle_component;
-        std::vector<int> first;  // shells of the last skin
+        std::vector<Shells> pieces;
         if (b < told.size() && told[b].frame == store.frame_count()) {
-            for (const int t : told[b].triangle) {
-                if (t >= 0 && std::size_t(t) < shell.size()) first.push_back(shell[t]);
-            }
+            pieces = shells_of(told[b], last[b]->shells);
         }
-        number(b, steps[b], std::move(first));
+        number(b, steps[b], std::move(pieces));
     }
 }
 
-// `first`: of the last of them, before its others.
-void PieceTrack::number(std::size_t body, std::vector<Step>& steps, std::vector<int> first) {
+// Of each of the pieces. A shell is of one alone, and what the skin has not is left out.
+std::vector<PieceTrack::Shells> PieceTrack::shells_of(const NamedPieces& told,
+                                                      const Components& shells) {
+    if (shells.count == 0) return {};
+    if (told.triangle.empty()) {
+        Shells all(std::size_t(shells.count));
+        std::iota(all.begin(), all.end(), 0);
+        return {all};
+    }
+    std::vector<Shells> pieces;
+    std::set<int> taken;
+    for (const std::vector<int>& triangles : told.triangle) {
+        Shells own;
+        for (const int t : triangles) {
+            if (t < 0 || std::size_t(t) >= shells.triangle_component.size()) continue;
+            const int shell = shells.triangle_component[std::size_t(t)];
+            if (taken.insert(shell).second) own.push_back(shell);
+        }
+        if (!own.empty()) pieces.push_back(std::move(own));
+    }
+    return pieces;
+}
+
+// The first skin that something comes off in; where nothing does, the first of all.
+std::size_t PieceTrack::first_parted(const std::vector<Step>& steps) {
+    for (std::size_t s = 1; s < steps.size(); ++s) {
+        const std::vector<int>& parent = steps[s].parent;
+        if (std::set<int>(parent.begin(), parent.end()).size() < parent.size()) return s;
+    }
+    return 0;
+}
+
+// `told`: pieces of the last of them, before its other shells.
+void PieceTrack::number(std::size_t body, std::vector<Step>& steps, std::vector<Shells> told) {
     std::vector<int>& first_frame = first_frame_[body] = {steps.front().frame};
-    for (std::size_t last = steps.size(); last-- > 0; first.clear()) {
+    const std::size_t parted = first_parted(steps);
+    for (std::size_t last = steps.size(); last-- > 0; told.clear()) {
+        for (std::size_t n = 0; n < told.size(); ++n) {
+            std::optional<std::size_t> from;
+            if (n > 0) from = parted;
+            number_piece(steps, last, told[n], from, first_frame);
+        }
         const std::vector<double>& volume = steps[last].volume;
         std::vector<int> order(volume.size());
         std::iota(order.begin(), order.end(), 0);
         std::stable_sort(order.begin(), order.end(),
                          [&](int a, int b) { return volume[a] > volume[b]; });
-        order.insert(order.begin(), first.begin(), first.end());
         for (const int shell : order) {
             if (steps[last].piece[shell] != Step::kNone) continue;
-            // Back to where it came off something that has a number, or to the start.
-            std::vector<int*> unnumbered;
-            int at = shell, number = 0;
-            for (std::size_t s = last;; --s) {
-                unnumbered.push_back(&steps[s].piece[at]);
-                const int parent = steps[s].parent[at];
-                if (s == 0 || parent == Step::kNone) break;
-                if (steps[s - 1].piece[parent] != Step::kNone) {
-                    number = static_cast<int>(first_frame.size());
-                    first_frame.push_back(steps[s].frame);
-                    break;
-                }
-                at = parent;
-            }
-            for (int* piece : unnumbered) *piece = number;
+            number_piece(steps, last, {shell}, {}, first_frame);
         }
         of_shell_[{body, steps[last].skin}] = steps[last].piece;
+    }
+}
+
+// A piece has a number of its own from where its first shell comes off something that has one, and
+// is what that was part of before. What was there from the start has it from the skin `from` on,
+// and is 0 before, or always.
+void PieceTrack::number_piece(std::vector<Step>& steps, std::size_t last, const Shells& shells,
+                              std::optional<std::size_t> from, std::vector<int>& first_frame) {
+    std::vector<int> number(last + 1, 0);  // of its first shell, skin by skin
+    std::size_t first = last;              // that it has none in
+    bool comes_off = false;
+    int at = shells.front();
+    for (std::size_t s = last + 1; at != Step::kNone && s-- > 0;) {
+        number[s] = steps[s].piece[at];
+        if (number[s] == Step::kNone) first = s;
+        comes_off |= number[s] != Step::kNone;
+        at = steps[s].parent[at];
+    }
+    const std::size_t own_from = !comes_off && from ? std::max(first, *from) : first;
+    int own = 0;
+    if (comes_off || from) {
+        own = static_cast<int>(first_frame.size());
+        first_frame.push_back(steps[own_from].frame);
+    }
+    for (std::size_t s = first; s <= last; ++s) number[s] = s < own_from ? 0 : own;
+    for (int shell : shells) {
+        for (std::size_t s = last + 1; shell != Step::kNone && s-- > 0;) {
+            if (steps[s].piece[shell] != Step::kNone) break;
+            steps[s].piece[shell] = number[s];
+            shell = steps[s].parent[shell];
+        }
     }
 }
 

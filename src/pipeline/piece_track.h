@@ -4,22 +4,26 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "pipeline/frame_store.h"
 
 namespace swage {
 
-// A triangle of each piece of a body's skin in that frame, in the order of their numbers.
+// The pieces of a body in that frame, in the order of their numbers: of each a triangle of every
+// shell of its skin, the largest shell first. None: the body is one piece.
 struct NamedPieces {
     int frame = 0;
-    std::vector<int> triangle;
+    std::vector<std::vector<int>> triangle;
 };
 
-// A body is one piece as it starts, of however many shells its skin is. Pieces are numbered as they
-// are in the last frame, the heaviest first: as that is told or, where it is not, by volume. Those
-// that are not there any more, since shells were joined again, come after. Where a shell comes
-// apart the number stays with the part that the first of what becomes of it is from.
+// A body is one piece as it starts, of however many shells its skin is, until something comes off
+// it. Pieces are numbered as they are in the last frame, the heaviest first: as that is told or,
+// where it is not, by volume, each shell that came off as a piece. Those that are not there any
+// more, since shells were joined again, come after. Where a shell comes apart the number stays with
+// the part that the first of what becomes of it is from. A piece of several shells has its number
+// from where the first of them came off, and all of them are until then what that was part of.
 class PieceTrack {
   public:
     // Goes over all frames. `told`: of each body, in the last frame. Throws Interrupted.
@@ -34,7 +38,12 @@ class PieceTrack {
   private:
     struct Skin;
     struct Step;
-    void number(std::size_t body, std::vector<Step>& steps, std::vector<int> first);
+    using Shells = std::vector<int>;
+    static std::vector<Shells> shells_of(const NamedPieces& told, const Components& shells);
+    static std::size_t first_parted(const std::vector<Step>& steps);
+    void number(std::size_t body, std::vector<Step>& steps, std::vector<Shells> told);
+    static void number_piece(std::vector<Step>& steps, std::size_t last, const Shells& shells,
+                             std::optional<std::size_t> from, std::vector<int>& first_frame);
 
     std::map<std::pair<std::size_t, int>, std::vector<int>> of_shell_;  // of a body's skin
     std::vector<std::vector<int>> first_frame_;                         // of each piece

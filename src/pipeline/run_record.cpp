@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kRecordFormat = 1;  // more, once a key goes or means something else
+constexpr int kRecordFormat = 2;  // more, once a key goes or means something else
 
 Json box_json(const Box& box) {
     if (box.empty()) return nullptr;
@@ -173,12 +173,18 @@ RunNames run_names_of(const Json& record) {
         for (const Json& stage : stages) {
             names.stage.push_back({stage.at("name"), stage.at("frames").at(1)});
         }
-        if (!stages.empty()) {
-            const Json pieces = stages.back().value("skin_pieces", Json::object());
+        if (!stages.empty() && stages.back().contains("skin_pieces")) {
+            const Json& pieces = stages.back().at("skin_pieces");
             // They are told of the meshes that it left.
             const int last = stages.back().value("unfinished_frame", names.stage.back().last);
             for (const std::string& body : names.body) {
-                names.piece.push_back({last, pieces.value(body, std::vector<int>())});
+                names.piece.push_back({last, {}});
+                for (const Json& piece : pieces.value(body, Json::array())) {
+                    // Of format 1 it is a triangle of its largest shell alone.
+                    names.piece.back().triangle.push_back(piece.is_array()
+                                                              ? piece.get<std::vector<int>>()
+                                                              : std::vector{piece.get<int>()});
+                }
             }
         }
     } catch (const Json::exception&) {

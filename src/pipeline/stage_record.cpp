@@ -2,8 +2,10 @@
 #include "pipeline/stage_record.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/hash.h"
+#include "geometry/mesh_objects.h"
 #include "pipeline/given_record.h"
 #include "pipeline/machine_place.h"
 #include "skin/skin_pieces.h"
@@ -48,24 +50,29 @@ Json energies_json(const Books& books) {
     return json;
 }
 
-// Of each body in several pieces, a triangle of each in its skin, as they are numbered: of the
-// outside, not of a cavity.
+// Of each body whose pieces its OBJ has as objects, in their order: a triangle of each shell of a
+// piece in its skin, the largest shell first.
 Json skin_pieces_json(const std::vector<WorkPiece>& bodies) {
     Json json = Json::object();
     for (const WorkPiece& body : bodies) {
         const std::vector<int> piece = skin_pieces(body.skin, body.mount, body.matter);
+        if (objects_of_pieces(body.skin, piece, body.label).triangle.empty()) continue;
         const Components shells = surface_components(body.skin);
         const std::vector<double> volume = component_volumes(body.skin, shells);
-        const auto volume_at = [&](std::size_t t) {
-            return volume[std::size_t(shells.triangle_component[t])];
-        };
-        std::vector<std::size_t> triangle;
-        for (std::size_t t = 0; t < piece.size(); ++t) {
-            triangle.resize(std::max(triangle.size(), std::size_t(piece[t]) + 1), piece.size());
-            std::size_t& of_piece = triangle[std::size_t(piece[t])];
-            if (of_piece == piece.size() || volume_at(t) > volume_at(of_piece)) of_piece = t;
+        std::vector<int> order(volume.size()), triangle(volume.size(), -1);
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](int a, int b) { return volume[a] > volume[b]; });
+        for (std::size_t t = piece.size(); t-- > 0;) {
+            triangle[shells.triangle_component[t]] = static_cast<int>(t);
         }
-        if (triangle.size() > 1) json[body.name] = triangle;
+        std::vector<std::vector<int>> told;
+        for (const int shell : order) {
+            const auto own = static_cast<std::size_t>(piece[triangle[shell]]);
+            told.resize(std::max(told.size(), own + 1));
+            told[own].push_back(triangle[shell]);
+        }
+        json[body.name] = told;
     }
     return json;
 }

@@ -7,9 +7,7 @@
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
 #include "pipeline/checkpoint.h"
-#include "pipeline/frame_store.h"
-#include "pipeline/piece_track.h"
-#include "pipeline/run_record.h"
+#include "pipeline/run_identity.h"
 #include "skin/new_look.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
@@ -115,48 +113,6 @@ TEST_CASE("cut faces show what lies inside, in all that a run leaves") {
     REQUIRE(run_swage({"export", out.string(), "--out", usd.string()}).code == 0);
     for (const char* name : {"cut_copper", "cut_lead"}) {
         CHECK(bytes_of(usd).find(name) != std::string::npos);
-    }
-}
-
-TEST_CASE("pieces have one order, in meshes and in passes") {
-    const Scratch scratch;
-    const fs::path scene = scratch.path() / "two.toml", out = scratch.path() / "out";
-    // What is cut off first is the heaviest in the end.
-    const std::string cut = "[[stage]]\nmachine = \"cut\"\nframes = 2\nplace = ";
-    put_text(scene, "[mesh]\nfile = \"" SWAGE_SOURCE_DIR
-                    "/assets/meshes/bar.obj\"\n[material]\nname = \"abs\"\n[mold]\nacross = 2\n" +
-                        cut + "-0.1\n" + cut + "0.2\n");
-    const Outcome outcome =
-        run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
-    INFO(outcome.err);
-    REQUIRE(outcome.code == 0);
-    const swage::FrameStore store(out / "motion.bin");
-    const swage::PieceTrack track(
-        store, swage::run_names_of(parse_json(bytes_of(out / "run.json"))).piece);
-    const swage::StoredBody last = store.frame(store.frame_count() - 1).body.at(0);
-    const swage::TriMesh skin = store.skin(last.skin);
-    const std::vector<int> piece = track.of_triangles(0, last.skin, skin);
-    const swage::TriMesh mesh = swage::read_mesh(out / "meshes/2-cut.obj");
-    REQUIRE(track.count(0) == 3);
-    REQUIRE(mesh.part_name ==
-            std::vector<std::string>{"bar_piece_1", "bar_piece_2", "bar_piece_3"});
-    const auto middle = [](const swage::TriMesh& of, const std::vector<int>& part,
-                           const std::vector<swage::Vec3>& position, int wanted) {
-        swage::Vec3 sum = swage::Vec3::Zero();
-        double area = 0;
-        for (std::size_t t = 0; t < of.triangle.size(); ++t) {
-            if (part[t] != wanted) continue;
-            const auto [a, b, c] = of.triangle[t];
-            const double own = swage::area_vector(position, of.triangle[t]).norm();
-            sum += own * (position[a] + position[b] + position[c]) / 3;
-            area += own;
-        }
-        return swage::Vec3(sum / area);
-    };
-    for (int p = 0; p < 3; ++p) {
-        CHECK((middle(skin, piece, last.position, p) -
-               middle(mesh, mesh.triangle_part, mesh.position, p))
-                  .norm() < 1e-4);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "pipeline/run_record.h"
 #include "tests/catch.h"
+#include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 using namespace swage;
@@ -32,4 +33,19 @@ TEST_CASE("what is no plain file, or far too long, is no record, and says so at 
     CHECK_FALSE(read_record(file));
     std::filesystem::resize_file(file, 1 << 30);  // with a hole
     CHECK(refusal().find("is too long") != std::string::npos);
+}
+
+TEST_CASE("what a record tells of pieces is read, also where it names one shell of each") {
+    Json record = parse_json(
+        R"({"scene": "a.toml", "bodies": [{"name": "a"}, {"name": "b"}, {"name": "c"}],
+            "stages": [{"name": "1-cut", "frames": [2, 9],
+                        "skin_pieces": {"a": [[5, 7], [0]], "b": [5, 0]}}]})");
+    const std::vector<NamedPieces> piece = run_names_of(record).piece;
+    REQUIRE(piece.size() == 3);
+    for (const NamedPieces& one : piece) CHECK(one.frame == 9);
+    CHECK(piece[0].triangle == std::vector<std::vector<int>>{{5, 7}, {0}});
+    CHECK(piece[1].triangle == std::vector<std::vector<int>>{{5}, {0}});
+    CHECK(piece[2].triangle.empty());
+    record["stages"][0].erase("skin_pieces");
+    CHECK(run_names_of(record).piece.empty());
 }
