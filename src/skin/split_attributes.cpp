@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "skin/split_attributes.h"
 
+#include <algorithm>
 #include <map>
 
 #include "geometry/edge_attributes.h"
@@ -139,7 +140,12 @@ void carry_materials(const TriMesh& mesh, const SurfaceSplit& split, const Insid
                      TriMesh& out) {
     const bool has_cap = !split.triangle.empty() && split.triangle.back().parent < 0;
     if (!has_cap && mesh.triangle_material.empty()) return;
-    const int cut = has_cap ? cut_material(out, mesh) : -1;
+    if (out.material.empty()) out.material.emplace_back();
+    // A material that no face has would be an empty slot in files.
+    const bool is_shown = std::ranges::any_of(split.triangle, [](const SplitTriangle& triangle) {
+        return triangle.parent < 0 && triangle.inside < 0;
+    });
+    const int cut = is_shown ? cut_material(out, mesh) : -1;
     for (const SplitTriangle& triangle : split.triangle) {
         int material = cut;
         if (triangle.inside >= 0) {

@@ -177,6 +177,23 @@ TEST_CASE(
     check_both(area.at("cut_c"), 0.06 * 0.16, 1e-9);
 }
 
+TEST_CASE("a cut through nothing but an inset has no other look than its") {
+    TriMesh plain = bar();
+    plain.material.clear();
+    plain.triangle_material.clear();
+    for (const TriMesh& mesh : {bar(), plain}) {
+        Fixture f(mesh);
+        const std::size_t looks = std::max<std::size_t>(1, f.mesh.material.size());
+        f.cut(sweep_of({.0137, 0, 0}, Vec3::UnitX(), 3),
+              one(swage::box_mesh({-0.6, -0.2, -0.2}, {0.6, 0.2, 0.2})));
+        const auto area = cut_areas(f, Vec3::UnitX());
+        REQUIRE(area.size() == 1);
+        check_both(area.at("cut_core"), 0.3 * 0.3, 1e-9);
+        REQUIRE(f.mesh.material.size() == looks + 1);
+        CHECK(f.mesh.material.back().name == "cut_core");
+    }
+}
+
 TEST_CASE("a blade that stops within the body shows what it has gone through") {
     Fixture f(bar());
     const Vec3 p(.0137, 0, 0);
