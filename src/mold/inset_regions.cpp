@@ -12,8 +12,9 @@ namespace swage {
 namespace {
 
 // Of one inset; where others divide it further, what it shares with the next is not known.
-// That many meshes at one place are no more than cells can hold, and as many as can be waited for.
-constexpr std::size_t kMostRegions = 100, kMostMeshes = 3;
+constexpr std::size_t kMostRegions = 100;
+// At one place: no more than cells can hold, and as many as can be waited for.
+constexpr std::size_t kMostMeshes = 3;
 
 Box everywhere() {
     const Vec3 far = Vec3::Constant(std::numeric_limits<double>::infinity());

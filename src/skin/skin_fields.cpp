@@ -229,7 +229,6 @@ class Numbers {
                 return parts_[7] > 0 ? equivalent_ / parts_[7] : 0;
             case SkinField::strength_use:
                 return strength_use();
-
             case SkinField::plastic_strain:
                 return std::max(0.0, parts_[6]);
             case SkinField::stress:
