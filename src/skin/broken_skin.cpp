@@ -361,6 +361,17 @@ class Breaker {
         return triangles;
     }
 
+    // Of a square that the surface does not cross: that of the surface nearest to it.
+    int part_about(const Face& face) {
+        Vec3 middle;
+        for (int d = 0; d < 3; ++d) {
+            const MiddlePlanes& planes = skin_.diced().planes;
+            const double high = planes.at(d, face.site[d]);
+            middle[d] = d == face.axis ? high : 0.5 * (planes.at(d, face.site[d] - 1) + high);
+        }
+        return skin_.diced().straight_mesh.triangle_part[tree().nearest(middle).triangle];
+    }
+
     int inner_vertex(const Face& face, const Vec2& at) {
         const std::array<int, 2> side = {(face.axis + 1) % 3, (face.axis + 2) % 3};
         const MiddlePlanes& planes = skin_.diced().planes;
@@ -379,12 +390,13 @@ class Breaker {
     }
 
     void close(const Face& face, std::vector<Segment>& segments, int part) {
-        const bool is_whole = parts_ > 1 && segments.empty();
+        const bool is_within = segments.empty(), is_whole = parts_ > 1 && is_within;
         if (!go_round(face, segments)) {
             ++result_.open_faces;
             return;
         }
         if (segments.empty()) return;
+        if (is_within && !whole_.triangle_part.empty()) part = part_about(face);
         Vec3i upper = face.site;
         ++upper[face.axis];
         for (const Corners& t : is_whole ? fill_whole(face) : fill(face, segments)) {

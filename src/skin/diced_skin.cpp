@@ -138,6 +138,8 @@ class Dicer {
         for (const Piece& piece : pieces) {
             const auto& c = piece.corner;
             skin_.straight_mesh.triangle.push_back({c[0].vertex, c[1].vertex, c[2].vertex});
+            if (old_.triangle_part.empty()) continue;
+            skin_.straight_mesh.triangle_part.push_back(old_.triangle_part[piece.parent]);
         }
     }
 

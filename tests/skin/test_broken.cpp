@@ -84,6 +84,31 @@ TEST_CASE("what broke in two shows two closed surfaces that move on their own, a
     CHECK((rides[0] > 0) != (rides[1] > 0));
 }
 
+TEST_CASE("what lay within an object that breaks is of that object, not of another") {
+    const double roughness = GENERATE(0., .25);
+    // Of two bars beside each other the second alone breaks into crumbs.
+    Aggregate matter =
+        test::make_shape([](const Vec3& p) { return std::abs(p.x()) < .1 ? 1. : -1.; },
+                         Vec3(-.5, -.15, -.15), Vec3i(20, 6, 6), .05);
+    TriMesh mesh = test::together(box_mesh(Vec3(-.5, -.15, -.15), Vec3(-.1, .15, .15)),
+                                  box_mesh(Vec3(.1, -.15, -.15), Vec3(.5, .15, .15)));
+    mesh.part_name = {"left", "right"};
+    for (const Corners& t : mesh.triangle) {
+        mesh.triangle_part.push_back(mesh.position[t[0]].x() > 0);
+    }
+    Fixture f(std::move(matter), std::move(mesh));
+    break_where(f.matter, [](const Vec3& p, const Vec3&) { return p.x() > 0; });
+    f.break_it(roughness);
+    CHECK(f.broken.open_faces == 0);
+    REQUIRE(f.broken.faces > 0);
+    int astray = 0;
+    for (std::size_t t = 0; t < f.broken.mesh.triangle.size(); ++t) {
+        const double x = f.broken.mesh.position[f.broken.mesh.triangle[t][0]].x();
+        astray += f.broken.mesh.triangle_part[t] != (x > 0);
+    }
+    CHECK(astray == 0);
+}
+
 TEST_CASE("a box whose edges and faces lie half-way between sites breaks without slivers") {
     const double a = .05, out = a * GENERATE(0., .5, -.5);
     Fixture f = bar();
