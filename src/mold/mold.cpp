@@ -30,6 +30,13 @@ std::string about(double length, int digits) {
     return length_text(std::stod(fmt::format("{:.{}g}", length, digits)));
 }
 
+// The largest length of two digits that is no more than this, for what is advised must do: its
+// digits after the second are left out. Of no more of them, for 0.1 is not quite a tenth.
+std::string at_most(double length) {
+    const std::string all = fmt::format("{:.9e}", length);
+    return length_text(std::stod(all.substr(0, all.find('.') + 2) + all.substr(all.find('e'))));
+}
+
 // The box, grown to whole cells about its centre (S2.16).
 TriMesh block_around(const TriMesh& mesh, double spacing) {
     const Box box = surface_box(mesh);
@@ -149,10 +156,10 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     }
     const double thickness = 2 * volume / surface_area(mesh);
     if (thickness < kThin * frame.spacing) {
-        findings.push_back(fmt::format(
-            "the mesh is about {} thick, thinner than its cells of {}; sheets that "
-            "share a cell merge (spacing = \"{}\" keeps them apart)",
-            about(thickness, 3), length_text(frame.spacing), about(0.5 * thickness, 2)));
+        findings.push_back(
+            fmt::format("the mesh is about {} thick, thinner than its cells of {}; sheets that "
+                        "share a cell merge (spacing = \"{}\" keeps them apart)",
+                        about(thickness, 3), length_text(frame.spacing), at_most(0.5 * thickness)));
     }
     // Separate bodies and handles tell of parts that melted together for want of room.
     const int bodies = count_bodies(mesh);
@@ -175,7 +182,7 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
             gaps.size() > 1 ? fmt::format(", as they do at {}",
                                           counted(gaps.size() - 1, "other place", "other places"))
                             : "",
-            about(0.5 * largest.width, 2)));
+            at_most(0.5 * largest.width)));
     } else if (wanted && surplus * cell <= 1e-6 * volume && euler_of(matter) != *wanted) {
         findings.push_back(fmt::format(
             "with cells of {} the matter has other holes or handles than the mesh: parts "
@@ -189,7 +196,7 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
         ExitCode::mesh,
         fmt::format("cannot mold: the mesh is about {} thick and nearly vanishes in cells of {}; "
                     "use spacing = \"{}\" or less",
-                    about(thickness, 3), length_text(spacing), about(thickness, 2)));
+                    about(thickness, 3), length_text(spacing), at_most(thickness)));
 }
 
 // Of an inset that others have taken all of, nothing is left to be weighed.

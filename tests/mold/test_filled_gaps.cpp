@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <set>
 
+#include "base/units.h"
 #include "geometry/box_mesh.h"
 #include "mold/mold.h"
 #include "tests/catch.h"
@@ -35,16 +36,20 @@ TriMesh fork_mesh(double gap) {
     return mesh;
 }
 
-// Whether the mold tells of a gap that its cells fill.
-bool tells(const TriMesh& mesh, Aggregate* matter = nullptr) {
+// What the mold tells of gaps that its cells fill; nothing if there are none.
+std::string told_of_gap(const TriMesh& mesh, double spacing, Aggregate* matter = nullptr) {
     MoldSettings settings;
-    settings.spacing = 1;
+    settings.spacing = spacing;
     std::vector<std::string> told;
     Aggregate molded = mold(mesh, {}, settings, {}, &told);
     if (matter != nullptr) *matter = std::move(molded);
-    return std::ranges::any_of(told, [](const std::string& line) {
-        return line.find("a gap in the mesh") != std::string::npos;
-    });
+    for (const std::string& line : told) {
+        if (line.find("a gap in the mesh") != std::string::npos) return line;
+    }
+    return {};
+}
+bool tells(const TriMesh& mesh, Aggregate* matter = nullptr) {
+    return !told_of_gap(mesh, 1, matter).empty();
 }
 
 // Whether the prongs share a particle or a cell well beyond their root.
@@ -74,6 +79,25 @@ TEST_CASE("a gap that cells fill is told, and one that they keep open is not") {
     }
     CHECK(open > 2);
     CHECK(filled > 2);
+}
+
+TEST_CASE("the spacing that is said to keep a gap open does") {
+    int told = 0;
+    for (double gap = 0.913; gap < 2; gap += 0.0217) {
+        const std::string line = told_of_gap(fork_mesh(gap), 1);
+        if (line.empty()) continue;
+        INFO(gap << ": " << line);
+        ++told;
+        const std::string before = "spacing = \"";
+        const std::size_t at = line.find(before);
+        REQUIRE(at != std::string::npos);
+        const std::string advised = line.substr(
+            at + before.size(), line.find('"', at + before.size()) - at - before.size());
+        const double spacing = parse_quantity(advised, Quantity::length);
+        CHECK(spacing <= 0.5 * gap * (1 + 1e-6));
+        CHECK(told_of_gap(fork_mesh(gap), spacing) == "");
+    }
+    CHECK(told > 20);
 }
 
 TEST_CASE("a gap is told of however it lies to the cells, and no wide one is") {
