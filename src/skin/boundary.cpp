@@ -268,8 +268,11 @@ BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look, double 
         facet.push_back({face.vertex, face.middle, face.diagonal});
     std::vector<char> fixed(surface.vertex_count);
     for (int v = 0; v < surface.vertex_count; ++v) fixed[v] = owner[v].at_cut;
-    part_crossings(facet, place_vertices(matter, surface, owner, lattice_places(matter, surface)),
-                   fixed, matter.lattice.spacing, mount.reference);
+    for (const auto& rest :
+         {rest_places(matter, samples, surface), lattice_places(matter, surface)}) {
+        part_crossings(facet, place_vertices(matter, surface, owner, rest), fixed,
+                       matter.lattice.spacing, mount.reference);
+    }
     for (int v = 0; v < surface.vertex_count; ++v) {
         bind_vertex(matter, pieces, mount.reference[v], owner[v], mount.cell[v], mount.side[v]);
     }

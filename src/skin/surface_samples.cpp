@@ -56,23 +56,43 @@ void SurfaceSamples::for_each_near(const Vec3& at, double reach, const F& f) con
 }
 
 // What two planes with a convex edge hold is inside both; else inside one of them.
-double SurfaceSamples::height(const Vec3& place) const {
-    constexpr double kReach = 1.5, kBeside = 0.5;  // spacings
+double SurfaceSamples::height(const Vec3& place, Vec3& normal) const {
+    constexpr double kReach = -kNone, kBeside = 0.5;  // spacings
     const Vec3 at = (place - lattice_.origin) / lattice_.spacing;
     const Sample* nearest = nullptr;
     double least = kReach * kReach;
     for_each_near(at, kReach, [&](const Sample& sample, const Vec3&, double d2) {
         if (d2 < least) least = d2, nearest = &sample;
     });
-    if (nearest == nullptr) return -kReach;
+    if (nearest == nullptr) return kNone;
     double height = nearest->normal.dot(at - nearest->place);
+    normal = nearest->normal;
     const auto consider = [&](const Sample& sample, const Vec3& way, double) {
         const double own = sample.normal.dot(way);
         const double convex = (sample.normal - nearest->normal).dot(sample.place - nearest->place);
-        if (convex > 0 ? own > height : convex < 0 && own < height) height = own;
+        if (!(convex > 0 ? own > height : convex < 0 && own < height)) return;
+        height = own;
+        normal = sample.normal;
     };
     for_each_near(at, std::sqrt(least) + kBeside, consider);
     return height;
+}
+
+double SurfaceSamples::height(const Vec3& place) const {
+    Vec3 unused;
+    return height(place, unused);
+}
+
+// NOTE: outside of an edge or a corner each of its planes has to be met.
+void SurfaceSamples::lower(double most, Vec3& place) const {
+    constexpr int kRounds = 6;
+    constexpr double kClose = 1e-6;  // spacings
+    Vec3 normal;
+    for (int round = 0; round < kRounds; ++round) {
+        const double over = height(place, normal) - most;
+        if (over < kClose) return;
+        place -= over * lattice_.spacing * normal;
+    }
 }
 
 bool SurfaceSamples::project(const Vec3& facing, Vec3& place, Vec3& normal) const {

@@ -18,14 +18,19 @@ class SurfaceSamples {
     // the mean normal there.
     bool project(const Vec3& facing, Vec3& place, Vec3& normal) const;
     // How far a place near the surface lies outside it, by the planes of the samples around, in
-    // spacings; negative inside, and where there is no surface near.
+    // spacings; negative inside, and kNone where there is no surface near.
+    static constexpr double kNone = -1.5;
     double height(const Vec3& place) const;
+    // Brings a place that lies higher than that down to it.
+    void lower(double most, Vec3& place) const;
 
   private:
     struct Sample {
         Vec3 place;  // in spacings from the lattice's origin
         Vec3 normal;
     };
+    // `normal`: becomes that of the plane that tells it.
+    double height(const Vec3& place, Vec3& normal) const;
     // Calls f(sample, way from it, squared distance) for those within `reach`, in spacings.
     template <typename F>
     void for_each_near(const Vec3& at, double reach, const F& f) const;

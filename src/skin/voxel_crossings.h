@@ -15,9 +15,8 @@ struct Facet {
     std::optional<Diagonal> diagonal = std::nullopt;  // as VoxelFace has it
 };
 
-// Puts points of facets that cross others back towards `start`, where the voxels have them and none
-// cross, until none do; returns whether any did. `fixed` points stay. `spacing`: of the lattice
-// [m].
+// Puts points of facets that cross others back towards `start`, until none do or they are there;
+// returns whether any did. `fixed` points stay. `spacing`: of the lattice [m].
 bool part_crossings(const std::vector<Facet>& facet, const std::vector<Vec3>& start,
                     const std::vector<char>& fixed, double spacing, std::vector<Vec3>& place);
 

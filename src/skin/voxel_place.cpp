@@ -20,7 +20,21 @@ namespace {
 constexpr std::size_t kChunk = 1024;  // points
 constexpr int kEvenRounds = 4, kRounds = 6, kCutRounds = 40, kUnfoldRounds = 12;
 constexpr double kFarthest = 2;   // spacings that a point may go from where the voxels have it
+constexpr double kMostOut = 0.1;  // spacings, of a cut's rim above the surface
 constexpr int kSlidingRings = 4;  // around a cut, of points that make room for its rim
+
+bool broke_by_load(const Aggregate& matter, const VoxelFace& face) {
+    const int axis = face.direction % 3;
+    const auto corner = matter.lattice.cell_corners(face.cell);
+    const ParticleId lower = corner[face.corner & ~(1 << axis)];
+    const auto& damage = matter.connection[axis].damage;
+    return face.cut && !damage.empty() && damage[lower] >= 1;
+}
+
+bool any_broke(const Aggregate& matter, const VoxelSurface& surface) {
+    return std::ranges::any_of(surface.face,
+                               [&](const VoxelFace& face) { return broke_by_load(matter, face); });
+}
 
 class Placer {
   public:
@@ -31,7 +45,8 @@ class Placer {
           samples_(samples),
           warp_(warp),
           a_(matter.lattice.spacing),
-          start_(lattice_places(matter, surface)) {}
+          start_(lattice_places(matter, surface)),
+          rest_(rest_places(matter, samples, surface)) {}
 
     // `surface`: the same.
     std::vector<Vec3> run(const Pieces& pieces, VoxelSurface& surface) {
@@ -44,16 +59,25 @@ class Placer {
         for (int round = 0; round < kRounds; ++round) settle(round > 0, false);
         // The steps of a cut take longer to even out, for only then no triangle is folded.
         for (int round = 0; round < kCutRounds && any_cut(); ++round) settle(true, true);
+        hold_rims();
         unfold();
         drop_crumbs(matter_, pieces, place_, surface);
         if (!warp_.is_none()) roughen();
         make_up_volume();
         unfold();
-        if (part_crossings(facets(), start_, on_cut_, a_, place_)) make_up_volume();
+        if (part_all()) {
+            make_up_volume();
+            if (any_broke(matter_, surface_)) part_all();
+        }
         return std::move(place_);
     }
 
   private:
+    // In parts hardly wider than a cell places at rest may cross; the voxels never do.
+    bool part_all() {
+        const bool any = part_crossings(facets(), rest_, blade_, a_, place_);
+        return part_crossings(facets(), start_, blade_, a_, place_) || any;
+    }
     std::vector<Facet> facets() const {
         std::vector<Facet> facet;
         for (const VoxelFace& face : surface_.face)
@@ -66,11 +90,13 @@ class Placer {
     void find_kinds() {
         outer_.assign(count(), 0);
         on_cut_.assign(count(), 0);
+        blade_.assign(count(), 0);
         exact_.assign(count(), 1);
         fixed_axis_.assign(count(), 0);
         normal_.assign(count(), Vec3::Zero());
         for (const VoxelFace& face : surface_.face) {
-            for (int p : face.point) on_cut_[p] |= face.cut;
+            const bool blade = face.cut && !broke_by_load(matter_, face);
+            for (int p : face.point) on_cut_[p] |= face.cut, blade_[p] |= blade;
             if (face.cut) continue;
             bool full = samples_.empty() || matter_.cell_fill[face.cell] > 1 - 1e-5f;
             for (int p : face.point) full = full && !near_dropped(surface_.site[p]);
@@ -208,7 +234,10 @@ class Placer {
             if (only_at_cuts && !slides_[s]) return;
             Vec3& p = next[s];
             const bool cut = target_[s].has_value();
-            if (on_cut_[s] && !cut) return;  // rubble keeps the lattice's steps
+            if (on_cut_[s] && !cut) {  // rubble keeps the lattice's steps
+                p = rest_[s];
+                return;
+            }
             if (outer_[s] && exact_[s]) {
                 if (cut) {
                     to_cut(s, p);
@@ -232,6 +261,14 @@ class Placer {
             stay_near(s, p);
         });
         place_ = std::move(next);
+    }
+
+    // A cut that runs nearly along the surface leads points of its rim out of the body.
+    void hold_rims() {
+        if (samples_.empty()) return;
+        parallel_each(count(), kChunk, [&](std::size_t s) {
+            if (outer_[s] && on_cut_[s]) samples_.lower(kMostOut, place_[s]);
+        });
     }
 
     // In parts hardly wider than a cell the nearest surface may be round the corner. Points of
@@ -267,24 +304,10 @@ class Placer {
         }
     }
 
-    bool broke_by_load(const VoxelFace& face) const {
-        const int axis = face.direction % 3;
-        const auto corner = matter_.lattice.cell_corners(face.cell);
-        const ParticleId lower = corner[face.corner & ~(1 << axis)];
-        const auto& damage = matter_.connection[axis].damage;
-        return face.cut && !damage.empty() && damage[lower] >= 1;
-    }
-
     // Points of faces that no blade made; on the outer surface along it.
     void roughen() {
-        std::vector<char> broke(count(), 0), blade(count(), 0);
-        for (const VoxelFace& face : surface_.face) {
-            if (!face.cut) continue;
-            std::vector<char>& kind = broke_by_load(face) ? broke : blade;
-            for (int p : face.point) kind[p] = 1;
-        }
         for (std::size_t s = 0; s < count(); ++s) {
-            if (!broke[s] || blade[s]) continue;
+            if (!on_cut_[s] || blade_[s]) continue;
             Vec3& p = place_[s];
             const HalfSite& at = surface_.site[s];
             Vec3 way = warp_.rough(p) + warp_.grain({at[0], at[1], at[2]}) - p;
@@ -339,10 +362,10 @@ class Placer {
     const double a_;
     const bool any_dropped_ = std::any_of(surface_.kept.begin(), surface_.kept.end(),
                                           [](CornerMask kept) { return kept != kAllCorners; });
-    const std::vector<Vec3> start_;
+    const std::vector<Vec3> start_, rest_;
     std::vector<Vec3> place_, normal_;
     std::vector<Vec3> facing_;  // normals before it meets the true surface: tell edges from sides
-    std::vector<char> outer_, on_cut_, exact_, fixed_axis_, slides_;
+    std::vector<char> outer_, on_cut_, blade_, exact_, fixed_axis_, slides_;
     std::vector<std::optional<CutTarget>> target_;
     std::vector<int> first_, neighbor_;
 };
@@ -356,6 +379,37 @@ std::vector<Vec3> lattice_places(const Aggregate& matter, const VoxelSurface& su
     const Vec3 low = box.low - box.size.cwiseProduct(matter.lattice.cell_site(0).cast<double>());
     for (const HalfSite& at : surface.site) {
         place.push_back(low + 0.5 * box.size.cwiseProduct(Vec3(at[0], at[1], at[2])));
+    }
+    return place;
+}
+
+// NOTE: all keep their order of heights, so that next to nothing comes to lie on the other side of
+// anything.
+std::vector<Vec3> rest_places(const Aggregate& matter, const SurfaceSamples& samples,
+                              const VoxelSurface& surface) {
+    constexpr double kLeft = 0.1;
+    std::vector<Vec3> place = lattice_places(matter, surface);
+    if (samples.empty() || !any_broke(matter, surface)) return place;
+    std::vector<char> far(place.size(), 0);
+    parallel_each(place.size(), kChunk, [&](std::size_t s) {
+        const double height = samples.height(place[s]);
+        far[s] = height == SurfaceSamples::kNone;
+        if (height > 0) samples.lower(kLeft * height, place[s]);
+    });
+    // A corner out of reach of the surface goes in between those beside it.
+    std::vector<Vec3> sum(place.size(), Vec3::Zero());
+    std::vector<int> count(place.size(), 0);
+    for (const VoxelFace& face : surface.face) {
+        for (int k = 0; k < 4 && !face.cut; ++k) {
+            const int p = face.point[k];
+            if (!far[p]) continue;
+            for (int q : {face.point[(k + 1) % 4], face.point[(k + 3) % 4]}) {
+                if (!far[q]) sum[p] += place[q], ++count[p];
+            }
+        }
+    }
+    for (std::size_t s = 0; s < place.size(); ++s) {
+        if (count[s] > 0) place[s] = sum[s] / count[s];
     }
     return place;
 }

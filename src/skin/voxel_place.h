@@ -21,4 +21,9 @@ std::vector<Vec3> place_points(const Aggregate& matter, const Pieces& pieces,
 // Where the voxels have the sites [m].
 std::vector<Vec3> lattice_places(const Aggregate& matter, const VoxelSurface& surface);
 
+// The same, but where anything broke for those outside of the true surface, which are drawn in to a
+// tenth of their height above it: points that cannot be where they belong rest there.
+std::vector<Vec3> rest_places(const Aggregate& matter, const SurfaceSamples& samples,
+                              const VoxelSurface& surface);
+
 }  // namespace swage

@@ -203,10 +203,16 @@ class Thinning {
         return true;
     }
 
-    // No cut runs near.
+    // No blade ran near. NOTE: where matter broke the surface goes on as it was molded.
     bool all_whole(const std::array<CellId, 8>& cells) const {
         return std::all_of(cells.begin(), cells.end(), [&](CellId cell) {
-            return cell < 0 || cell_is_whole(matter_, matter_.lattice.cell_row(cell));
+            if (cell < 0) return true;
+            const auto corner = matter_.lattice.cell_corners(cell);
+            return std::ranges::none_of(kCellConnection, [&](const CellConnection& link) {
+                const ConnectionArrays& all = matter_.connection[link.direction];
+                const ParticleId lower = corner[link.corner];
+                return all.weight[lower] <= 0 && (all.damage.empty() || all.damage[lower] < 1);
+            });
         });
     }
 

@@ -29,6 +29,16 @@ Aggregate lumps(int kind) {
         Vec3::Constant(-9), Vec3i::Constant(18), 1.0);
 }
 
+// A ball, or a rod that lies askew, and how far out of it a place lies.
+double out_of(bool is_ball, const Vec3& at) {
+    if (is_ball) return at.norm() - 4.5;
+    const Vec3 along = Vec3(2, 1, .6).normalized();
+    const double far = std::abs(along.dot(at)) - 7;
+    const double aside = at.cross(along).norm() - 3.1;
+    return std::max(far, aside) < 0 ? std::max(far, aside)
+                                    : std::hypot(std::max(far, 0.0), std::max(aside, 0.0));
+}
+
 // Those that hold less than a tenth of a cell, but for bodies of their own.
 int small_shells(const BoundarySkin& skin, const Aggregate& matter) {
     const TriMesh& mesh = skin.mesh;
@@ -93,4 +103,46 @@ TEST_CASE("breaks of single connections here and there have two faces an edge") 
     const TriMesh mesh = boundary_skin(block).mesh;
     CHECK(surface_components(mesh).count > 5);
     CHECK(test::is_closed(mesh));
+}
+
+TEST_CASE(
+    "where matter breaks its boundary stays on the surface, and runs nowhere through itself") {
+    const bool is_ball = GENERATE(true, false);
+    const double roughness = GENERATE(0., .25);
+    // Of the connections that are broken the share, or those across a plane.
+    const double share = GENERATE(.003, .03, .3, 0.);
+    CAPTURE(is_ball, roughness, share);
+    Aggregate matter = test::make_shape([&](const Vec3& at) { return out_of(is_ball, at); },
+                                        Vec3(-9, -9, -9), Vec3i::Constant(18), 1);
+    const double whole = surface_area(boundary_skin(matter).mesh);
+    std::mt19937 random(5);
+    const Vec3 across = Vec3(1, .31, -.44).normalized();
+    const auto is_over = [&](ParticleId p) {
+        return across.dot(matter.particle_reference.at(p)) > .2;
+    };
+    for (ConnectionArrays& all : matter.connection) all.damage.assign(matter.particle_count(), 0);
+    for (const Span& span : matter.lattice.span) {
+        for (int n = 0; n < span.count; ++n) {
+            const ParticleId lower = span.lower + n, upper = span.upper + n;
+            const bool breaks = share > 0 ? random() < share * std::mt19937::max()
+                                          : is_over(lower) != is_over(upper);
+            if (!breaks) continue;
+            matter.connection[span.direction].weight.set(lower, 0);
+            matter.connection[span.direction].damage[lower] = 1;
+        }
+    }
+    const BoundarySkin skin = boundary_skin(matter, nullptr, roughness);
+    double farthest = 0, area = 0;
+    for (std::size_t t = 0; t < skin.mesh.triangle.size(); ++t) {
+        if (skin.mesh.triangle_material[t] == 1) continue;
+        const auto& [a, b, c] = skin.mesh.triangle[t];
+        const auto at = [&](int v) { return skin.mount.reference[v]; };
+        area += .5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
+        for (int v : {a, b, c}) farthest = std::max(farthest, out_of(is_ball, at(v)));
+    }
+    CHECK(farthest < (share == .3 ? .5 : .15));  // .3: rubble
+    CHECK(area == Approx(whole).epsilon(.02));
+    CHECK(signed_volume(skin.mesh) == Approx(matter.volume()).epsilon(.002));
+    CHECK(test::is_closed(skin.mesh));
+    CHECK(test::crossings(skin.mesh) == 0);
 }
