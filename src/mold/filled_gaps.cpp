@@ -1,132 +1,244 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Along each axis the section of the matter grows by what of the surface faces that way, and
-// shrinks by what faces the other (as in shares.cpp). Squares across which there is none, that lie
-// beside each other, are one gap.
+// What of the surface faces what, in one cell or in cells that share a corner, has matter behind it
+// that the lattice joins. The mesh joins it too if the surface does within the cells around.
 #include "mold/filled_gaps.h"
 
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <map>
 #include <tuple>
+#include <utility>
 
+#include "base/parallel.h"
 #include "geometry/disjoint_sets.h"
+#include "mold/surface_pieces.h"
 
 namespace swage {
 
 namespace {
 
-constexpr double kNothing = 1e-9;  // [cells' faces], of a section
-// NOTE: what enters a cell on one side and leaves it on the other may do so within it, but only one
-// after the other if both sections do not fit beside each other.
-constexpr double kOverlap = 1.05;
-constexpr int kDeep = 2;  // [cells], to both sides along the gap
+constexpr double kTouch = 1e-6;  // [cells]
+// Walls that open by more than 60 degrees are two cells apart within two cells of their root.
+constexpr double kOpposed = -0.5;  // most that the product of their normals may be
+constexpr double kNarrows = 0.5;   // of its width: where it has less, it closes up
 
-struct Square {
-    int axis;
-    Vec3i cell;    // on its low face, or across it
-    int plane;     // along the axis [half cells]
-    double width;  // of the gap there [cells]
-};
-
-struct WallsOfCell {
-    Vec3i cell;
-    const CellWalls* wall;
-};
-
-void find_across(int axis, std::vector<WallsOfCell>& walls, const std::vector<CellLayer>& layers,
-                 std::vector<Square>& found) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const auto column = [&](const Vec3i& c) { return std::pair(c[v], c[u]); };
-    std::sort(walls.begin(), walls.end(), [&](const WallsOfCell& a, const WallsOfCell& b) {
-        return std::tuple(column(a.cell), -a.cell[axis]) <
-               std::tuple(column(b.cell), -b.cell[axis]);
-    });
-    const auto fill_of = [&](const Vec3i& c) {
-        const CellFill* const share = share_of(layers, c.x(), c.y(), c.z());
-        return share != nullptr ? share->fill : 0.0;
-    };
-    double section = 0;  // at the high face
-    for (std::size_t n = 0; n < walls.size(); ++n) {
-        const auto& [cell, wall] = walls[n];
-        if (n > 0 && column(walls[n - 1].cell) != column(cell)) section = 0;
-        const double high = section, ends = wall->toward[2 * axis],
-                     begins = wall->toward[2 * axis + 1];
-        const double low = section = high + ends - begins;
-        const double fill = fill_of(cell);
-        if (!(fill > 0)) continue;
-        const Vec3i below = cell - Vec3i::Unit(axis);
-        const double beside = low < kNothing ? fill_of(below) : 0.0;
-        if (beside > 0) {
-            found.push_back({axis, cell, 2 * cell[axis], 2 - fill - beside});
-        } else if (low + high > kOverlap && ends > low - kNothing && begins > high - kNothing) {
-            found.push_back({axis, cell, 2 * cell[axis] + 1, 1 - fill});
-        }
-    }
+bool is_opposite(const Vec3& way, const Vec3& normal, const Vec3& other, double slack) {
+    return normal.dot(other) < kOpposed && way.dot(normal) > -slack && way.dot(other) < slack;
 }
 
-// Those beside each other.
-DisjointSets grouped(const std::vector<Square>& square) {
-    DisjointSets groups(square.size());
-    std::map<std::tuple<int, int, int, int>, int> at;
-    const auto key = [&](const Square& s, int along, int by, int plane) {
-        Vec3i c = s.cell;
-        c[along] += by;
-        return std::tuple(s.axis, c[(s.axis + 1) % 3], c[(s.axis + 2) % 3], plane);
-    };
-    for (std::size_t n = 0; n < square.size(); ++n) {
-        at[key(square[n], 0, 0, square[n].plane)] = static_cast<int>(n);
+// Cells that the surface passes, layer by layer, row by row.
+class SurfaceCells {
+  public:
+    SurfaceCells(const std::vector<CellLayer>& layers, const MoldFrame& frame)
+        : layers_(layers), count_(frame.cell_count), row_(layers.size()) {
+        parallel_for(layers.size(), [&](std::size_t k) {
+            const std::vector<SurfacePatch>& patch = layers[k].patch;
+            row_[k].assign(static_cast<std::size_t>(count_.y()) + 1, 0);
+            for (const SurfacePatch& p : patch) ++row_[k][p.j + 1];
+            for (int j = 0; j < count_.y(); ++j) row_[k][j + 1] += row_[k][j];
+        });
     }
-    for (std::size_t n = 0; n < square.size(); ++n) {
-        const Square& s = square[n];
-        for (int along : {(s.axis + 1) % 3, (s.axis + 2) % 3}) {
-            for (int aside = -2; aside <= 2; ++aside) {  // a gap may stand askew
-                const auto next = at.find(key(s, along, 1, s.plane + aside));
-                if (next != at.end()) groups.unite(static_cast<int>(n), next->second);
+
+    // Those of a layer that hold matter and whose surface may face that of others around.
+    std::vector<Vec3i> facing(int k) const {
+        std::vector<Vec3i> found;
+        const std::vector<SurfacePatch>& patch = layers_[k].patch;
+        for (std::size_t begin = 0, end = 0; begin < patch.size(); begin = end) {
+            const Vec3i cell(patch[begin].i, patch[begin].j, k);
+            while (end < patch.size() && patch[end].i == cell.x() && patch[end].j == cell.y())
+                ++end;
+            if (faces(cell, &patch[begin], &patch[0] + end) &&
+                share_of(layers_, cell.x(), cell.y(), k) != nullptr) {
+                found.push_back(cell);
             }
         }
+        return found;
     }
-    return groups;
+
+  private:
+    bool faces(const Vec3i& cell, const SurfacePatch* first, const SurfacePatch* last) const {
+        for (int k = cell.z() - 1; k <= cell.z() + 1; ++k) {
+            if (k < 0 || k >= count_.z()) continue;
+            for (int j = cell.y() - 1; j <= cell.y() + 1; ++j) {
+                if (j < 0 || j >= count_.y()) continue;
+                const SurfacePatch* const all = layers_[k].patch.data();
+                const SurfacePatch* other =
+                    std::lower_bound(all + row_[k][j], all + row_[k][j + 1], cell.x() - 1,
+                                     [](const SurfacePatch& p, int i) { return p.i < i; });
+                for (; other < all + row_[k][j + 1] && other->i <= cell.x() + 1; ++other) {
+                    for (const SurfacePatch* one = first; one < last; ++one) {
+                        // NOTE: a patch is a mean of what lies in a bin, which may be several.
+                        if (is_opposite(other->center - one->center, one->normal, other->normal, 1))
+                            return true;
+                    }
+                }
+            }
+        }
+        return false;
+    }
+
+    const std::vector<CellLayer>& layers_;
+    const Vec3i& count_;
+    std::vector<std::vector<std::size_t>> row_;  // first patch of each, and the end
+};
+
+bool comes_before(const Vec3i& a, const Vec3i& b) {
+    return std::tuple(a.z(), a.y(), a.x()) < std::tuple(b.z(), b.y(), b.x());
+}
+
+std::vector<Vec3i> with_those_around(const std::vector<Vec3i>& cells) {
+    std::vector<Vec3i> all;
+    all.reserve(27 * cells.size());
+    for (const Vec3i& c : cells) {
+        for (int n = 0; n < 27; ++n) {
+            all.push_back(c + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1));
+        }
+    }
+    std::sort(all.begin(), all.end(), comes_before);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
+
+struct Pair {
+    int from, to;  // patches
+    bool apart;    // they do not hang together around the first
+    auto operator<=>(const Pair&) const = default;
+};
+
+// Of patches that face each other and have matter.
+std::vector<Pair> facing_pairs(const SurfacePieces& pieces, const std::vector<Vec3i>& facing) {
+    const std::vector<FacingPatch>& patch = pieces.patches();
+    const auto first_in = [&](const Vec3i& cell) {
+        return static_cast<std::size_t>(std::lower_bound(patch.begin(), patch.end(), cell,
+                                                         [&](const FacingPatch& p, const Vec3i& c) {
+                                                             return comes_before(pieces.cell_of(p),
+                                                                                 c);
+                                                         }) -
+                                        patch.begin());
+    };
+    const auto of_cells = [&](std::size_t begin, std::size_t end) {
+        std::vector<Pair> pairs;
+        for (std::size_t n = begin; n < end; ++n) {
+            const Vec3i& cell = facing[n];
+            std::vector<std::size_t> others;
+            for (int around = 0; around < 27; ++around) {
+                const Vec3i c = cell + Vec3i(around % 3 - 1, around / 3 % 3 - 1, around / 9 - 1);
+                if (!std::binary_search(facing.begin(), facing.end(), c, comes_before)) continue;
+                for (std::size_t q = first_in(c); q < patch.size() && pieces.cell_of(patch[q]) == c;
+                     ++q)
+                    others.push_back(q);
+            }
+            std::vector<int> joined;
+            for (std::size_t p = first_in(cell);
+                 p < patch.size() && pieces.cell_of(patch[p]) == cell; ++p) {
+                if (joined.empty() || joined[0] != patch[p].piece) {
+                    joined = pieces.joined_around(patch[p].piece);
+                }
+                for (std::size_t q : others) {
+                    if (!is_opposite(patch[q].center - patch[p].center, patch[p].normal,
+                                     patch[q].normal, kTouch))
+                        continue;
+                    const bool apart =
+                        std::find(joined.begin(), joined.end(), patch[q].piece) == joined.end();
+                    pairs.push_back({static_cast<int>(p), static_cast<int>(q), apart});
+                }
+            }
+        }
+        return pairs;
+    };
+    std::vector<Pair> all;
+    for (const std::vector<Pair>& some : parallel_parts(facing.size(), 256, of_cells)) {
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+// Of a patch, to what faces it nearest.
+struct Reach {
+    int patch;
+    Vec3 middle;   // [cells]
+    double width;  // [cells]
+    double least;  // of what its sides have nearby, where they hang together too
+    double open;   // the spacing that keeps so much open [cells]
+};
+
+FilledGap gap_of(std::vector<Reach> reach, const std::vector<FacingPatch>& patch,
+                 const MoldFrame& frame) {
+    double area = 0, open = std::numeric_limits<double>::infinity(), least = reach[0].least;
+    Vec3 moment = Vec3::Zero();
+    for (const Reach& r : reach) {
+        area += patch[r.patch].area, moment += patch[r.patch].area * r.middle;
+        open = std::min(open, r.least * r.open / r.width), least = std::min(least, r.least);
+    }
+    const auto middle = reach.begin() + static_cast<std::ptrdiff_t>(reach.size() / 2);
+    std::nth_element(reach.begin(), middle, reach.end(),
+                     [](const Reach& a, const Reach& b) { return a.width < b.width; });
+    const double width = middle->width;
+    const bool stays = width > kTouch && least > kNarrows * width;
+    return {frame.point(2 * moment / area), width > kTouch ? width * frame.spacing : 0, area / 2,
+            stays ? open * frame.spacing : 0};
 }
 
 }  // namespace
 
-std::vector<FilledGap> filled_gaps(const std::vector<CellLayer>& layers, const MoldFrame& frame) {
-    std::vector<WallsOfCell> walls;
-    for (std::size_t k = 0; k < layers.size(); ++k) {
-        for (const CellWalls& w : layers[k].wall) {
-            walls.push_back({Vec3i(w.i, w.j, static_cast<int>(k)), &w});
+std::vector<FilledGap> filled_gaps(const TriMesh& mesh, const std::vector<CellLayer>& layers,
+                                   const MoldFrame& frame) {
+    const SurfaceCells surface(layers, frame);
+    std::vector<std::vector<Vec3i>> of_layer(layers.size());
+    parallel_for(layers.size(),
+                 [&](std::size_t k) { of_layer[k] = surface.facing(static_cast<int>(k)); });
+    std::vector<Vec3i> facing;
+    for (const std::vector<Vec3i>& cells : of_layer) {
+        facing.insert(facing.end(), cells.begin(), cells.end());
+    }
+    if (facing.empty()) return {};
+
+    const SurfacePieces pieces(mesh, frame, with_those_around(facing));
+    const std::vector<FacingPatch>& patch = pieces.patches();
+    const std::vector<Pair> pairs = facing_pairs(pieces, facing);
+    DisjointSets groups(patch.size());
+    std::vector<Reach> reach;
+    std::vector<double> closest(pieces.count(), std::numeric_limits<double>::infinity());
+    for (const Pair& pair : pairs) {
+        const FacingPatch &one = patch[pair.from], &other = patch[pair.to];
+        const Vec3 way = other.center - one.center;
+        const double width = 0.5 * way.dot(one.normal - other.normal);
+        closest[one.piece] = std::min(closest[one.piece], width);
+        if (!pair.apart ||
+            !std::binary_search(pairs.begin(), pairs.end(), Pair{pair.to, pair.from, true}))
+            continue;
+        groups.unite(pair.from, pair.to);
+        if (reach.empty() || reach.back().patch != pair.from) {
+            reach.push_back(
+                {pair.from, Vec3::Zero(), std::numeric_limits<double>::infinity(), 0, 0});
+        }
+        Reach& best = reach.back();
+        if (width >= best.width) continue;
+        // Along each axis the lattice joins what is two cells apart.
+        best = {pair.from, 0.5 * (one.center + other.center), width, width,
+                width / (2 * one.normal.lpNorm<1>())};
+    }
+    std::vector<int> piece_patch(pieces.count(), -1);
+    // A gap goes on where the surface of its sides does.
+    for (const Reach& r : reach) {
+        int& known = piece_patch[patch[r.patch].piece];
+        if (known < 0) known = r.patch;
+        groups.unite(known, r.patch);
+    }
+    for (Reach& r : reach) {
+        r.least = std::min(r.least, closest[patch[r.patch].piece]);
+        for (int next : pieces.next_to(patch[r.patch].piece)) {
+            r.least = std::min(r.least, closest[next]);
+            if (piece_patch[next] >= 0) groups.unite(piece_patch[next], r.patch);
         }
     }
-    std::vector<Square> square;
-    for (int axis = 0; axis < 3; ++axis) find_across(axis, walls, layers, square);
-    struct Group {
-        Vec3i low = Vec3i::Constant(std::numeric_limits<int>::max()),
-              high = Vec3i::Constant(std::numeric_limits<int>::min());
-        int axis = 0;
-        Vec3 bins = Vec3::Zero();
-        double width = std::numeric_limits<double>::infinity();
-        int count = 0;
-    };
     std::vector<int> number;
-    std::vector<Group> groups(static_cast<std::size_t>(grouped(square).number_sets(number)));
-    for (std::size_t n = 0; n < square.size(); ++n) {
-        const Square& s = square[n];
-        Group& group = groups[number[n]];
-        group.axis = s.axis;
-        group.low = group.low.cwiseMin(s.cell), group.high = group.high.cwiseMax(s.cell);
-        Vec3 middle = (2 * s.cell + Vec3i::Ones()).cast<double>();
-        middle[s.axis] = s.plane;
-        group.bins += middle;
-        group.width = std::min(group.width, s.width);
-        ++group.count;
-    }
+    std::vector<std::vector<Reach>> of_group(static_cast<std::size_t>(groups.number_sets(number)));
+    for (const Reach& r : reach) of_group[number[r.patch]].push_back(r);
     std::vector<FilledGap> gaps;
-    for (const Group& group : groups) {
-        const Vec3i size = group.high - group.low + Vec3i::Ones();
-        if (size[(group.axis + 1) % 3] < kDeep || size[(group.axis + 2) % 3] < kDeep) continue;
-        gaps.push_back({frame.point(group.bins / group.count), group.width * frame.spacing,
-                        group.count * frame.spacing * frame.spacing});
+    for (std::vector<Reach>& group : of_group) {
+        if (!group.empty()) gaps.push_back(gap_of(std::move(group), patch, frame));
     }
     std::ranges::stable_sort(gaps, std::greater<>(), &FilledGap::area);
     return gaps;

@@ -11,13 +11,15 @@
 namespace swage {
 
 struct FilledGap {
-    Vec3 place;    // its middle [m]
-    double width;  // about, where it is least [m]
-    double area;   // that is held together [m2]
+    Vec3 place;      // its middle, in the mesh [m]
+    double width;    // about, of most of it [m]; 0: its sides touch
+    double area;     // that is held together [m2]
+    double spacing;  // that keeps it open [m]; 0: none does, it narrows to nothing
 };
 
-// Largest first. Of each face that two cells share, and across each cell, the section of the matter
-// is exact: there is none, and matter on both sides. Grooves of a single cell's depth are not told.
-std::vector<FilledGap> filled_gaps(const std::vector<CellLayer>& layers, const MoldFrame& frame);
+// Largest first. Sides that hang together in the cells around are no gap: grooves of a single
+// cell's depth are not told. Nor is it where parts of the surface cross.
+std::vector<FilledGap> filled_gaps(const TriMesh& mesh, const std::vector<CellLayer>& layers,
+                                   const MoldFrame& frame);
 
 }  // namespace swage

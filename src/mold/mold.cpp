@@ -126,6 +126,31 @@ double filled_cells(const std::vector<CellLayer>& layers) {
     return sum;
 }
 
+std::string gap_text(const std::vector<FilledGap>& gaps, double spacing) {
+    const FilledGap& largest = gaps[0];
+    const auto at = [&](int axis) {
+        const double place = largest.place[axis];
+        return length_text(std::abs(place) > 1e-6 * spacing ? place : 0);
+    };
+    const std::string what =
+        largest.width > 0
+            ? fmt::format(
+                  "a gap in the mesh of about {} is too narrow for cells of {}, which hold "
+                  "its sides",
+                  about(largest.width, 2), length_text(spacing))
+            : fmt::format("the sides of a gap in the mesh touch, and cells of {} hold them",
+                          length_text(spacing));
+    return fmt::format(
+        "{} together over {} about [{}, {}, {}] of the mesh{}{}", what, area_text(largest.area),
+        at(0), at(1), at(2),
+        gaps.size() > 1 ? fmt::format(", as they do at {}",
+                                      counted(gaps.size() - 1, "other place", "other places"))
+                        : "",
+        largest.spacing > 0
+            ? fmt::format("; spacing = \"{}\" keeps it open", at_most(largest.spacing))
+            : "");
+}
+
 // Everything about the result that a user would not expect.
 void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
                    const std::vector<CellLayer>& layers, double lost, double off_centre,
@@ -171,18 +196,9 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
             "those less than two cells ({}) apart may, or are too small for these; a "
             "smaller spacing keeps them apart",
             bodies, pieces, length_text(frame.spacing), length_text(2 * frame.spacing)));
-    } else if (const std::vector<FilledGap> gaps = filled_gaps(layers, frame); !gaps.empty()) {
-        const FilledGap& largest = gaps[0];
-        const auto at = [&](int axis) { return length_text(largest.place[axis]); };
-        findings.push_back(fmt::format(
-            "a gap in the mesh of about {} is too narrow for cells of {}, which hold its sides "
-            "together over {} about [{}, {}, {}]{}; spacing = \"{}\" keeps it open",
-            about(largest.width, 2), length_text(frame.spacing), area_text(largest.area), at(0),
-            at(1), at(2),
-            gaps.size() > 1 ? fmt::format(", as they do at {}",
-                                          counted(gaps.size() - 1, "other place", "other places"))
-                            : "",
-            at_most(0.5 * largest.width)));
+    } else if (const std::vector<FilledGap> gaps = filled_gaps(mesh, layers, frame);
+               !gaps.empty()) {
+        findings.push_back(gap_text(gaps, frame.spacing));
     } else if (wanted && surplus * cell <= 1e-6 * volume && euler_of(matter) != *wanted) {
         findings.push_back(fmt::format(
             "with cells of {} the matter has other holes or handles than the mesh: parts "

@@ -28,7 +28,6 @@ constexpr double kWrinkle = 0.05;
 struct RowTerms {
     double area = 0, area_y = 0, area_z = 0;              // integrals of n_x (1, y, z)
     double fill = 0, fill_x = 0, fill_y = 0, fill_z = 0;  // of n_x (x, (x2 - x)/2, xy, xz)
-    std::array<double, 6> toward{};                       // as CellWalls has it
     int first_patch = -1;
 };
 
@@ -95,9 +94,7 @@ class LayerSharer {
             finish_row(j, layer);
             for (int i = 0; i < frame_.cell_count.x(); ++i) {
                 const int t = term_of_column_[column(i, j)];
-                if (t < 0) continue;
-                finish_patches(i, j, term_[t], layer);
-                layer.wall.push_back({i, j, term_[t].toward});
+                if (t >= 0) finish_patches(i, j, term_[t], layer);
             }
         }
         return layer;
@@ -138,9 +135,6 @@ class LayerSharer {
             const double piece = cross.dot(area_of_cross);
             area += piece;
             moment += piece / 3 * (a + b + c);
-            for (int d = 0; d < 3; ++d) {
-                sum.toward[2 * d + (cross[d] < 0)] += std::abs(cross[d]) / 8;
-            }
             const double s = cross.x() / 8;  // half, and two bins a cell
             if (s == 0) continue;
             const Vec3 ub = 0.5 * b - low, uc = 0.5 * c - low;
@@ -165,7 +159,6 @@ class LayerSharer {
         term.area += sum.area, term.area_y += sum.area_y, term.area_z += sum.area_z;
         term.fill += sum.fill, term.fill_x += sum.fill_x;
         term.fill_y += sum.fill_y, term.fill_z += sum.fill_z;
-        for (int side = 0; side < 6; ++side) term.toward[side] += sum.toward[side];
 
         const int octant = (bin.x() & 1) + 2 * (bin.y() & 1) + 4 * (bin.z() & 1);
         RawPatch& patch = patch_at(term, 6 * octant + direction);

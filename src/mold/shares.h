@@ -17,12 +17,6 @@ struct CellFill {
     Vec3 moment;  // fill times the centroid, in cells from the cell's centre
 };
 
-// What of a cell's surface faces along an axis and against it, each seen along that axis.
-struct CellWalls {
-    int i, j;
-    std::array<double, 6> toward{};  // +x, -x, +y, -y, +z, -z [cells' faces]
-};
-
 // Surface of one bin whose normals point most along one of the six axis directions.
 struct SurfacePatch {
     int i, j;     // the cell it lies in
@@ -35,7 +29,6 @@ struct SurfacePatch {
 struct CellLayer {
     std::vector<CellFill> share;      // sorted by j, i
     std::vector<SurfacePatch> patch;  // sorted by j, i
-    std::vector<CellWalls> wall;      // of those that the surface passes; sorted by j, i
     double surplus = 0;               // [cells], filled more than once by overlapping parts
     double deficit = 0;  // [cells], filled less than not at all by parts turned inside out
 };
