@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -83,7 +82,8 @@ class SurfaceCells {
 };
 
 bool comes_before(const Vec3i& a, const Vec3i& b) {
-    return std::tuple(a.z(), a.y(), a.x()) < std::tuple(b.z(), b.y(), b.x());
+    if (a.z() != b.z()) return a.z() < b.z();
+    return a.y() != b.y() ? a.y() < b.y() : a.x() < b.x();
 }
 
 std::vector<Vec3i> with_those_around(const std::vector<Vec3i>& cells) {
@@ -108,14 +108,15 @@ struct Pair {
 // Of patches that face each other and have matter.
 std::vector<Pair> facing_pairs(const SurfacePieces& pieces, const std::vector<Vec3i>& facing) {
     const std::vector<FacingPatch>& patch = pieces.patches();
-    const auto first_in = [&](const Vec3i& cell) {
-        return static_cast<std::size_t>(std::lower_bound(patch.begin(), patch.end(), cell,
-                                                         [&](const FacingPatch& p, const Vec3i& c) {
-                                                             return comes_before(pieces.cell_of(p),
-                                                                                 c);
-                                                         }) -
-                                        patch.begin());
-    };
+    // Those of each cell.
+    std::vector<std::pair<std::size_t, std::size_t>> range;
+    std::size_t end = 0;
+    for (const Vec3i& cell : facing) {
+        while (end < patch.size() && comes_before(pieces.cell_of(patch[end]), cell)) ++end;
+        const std::size_t begin = end;
+        while (end < patch.size() && pieces.cell_of(patch[end]) == cell) ++end;
+        range.emplace_back(begin, end);
+    }
     const auto of_cells = [&](std::size_t begin, std::size_t end) {
         std::vector<Pair> pairs;
         for (std::size_t n = begin; n < end; ++n) {
@@ -123,14 +124,13 @@ std::vector<Pair> facing_pairs(const SurfacePieces& pieces, const std::vector<Ve
             std::vector<std::size_t> others;
             for (int around = 0; around < 27; ++around) {
                 const Vec3i c = cell + Vec3i(around % 3 - 1, around / 3 % 3 - 1, around / 9 - 1);
-                if (!std::binary_search(facing.begin(), facing.end(), c, comes_before)) continue;
-                for (std::size_t q = first_in(c); q < patch.size() && pieces.cell_of(patch[q]) == c;
-                     ++q)
-                    others.push_back(q);
+                const auto at = std::lower_bound(facing.begin(), facing.end(), c, comes_before);
+                if (at == facing.end() || *at != c) continue;
+                const auto& [from, to] = range[static_cast<std::size_t>(at - facing.begin())];
+                for (std::size_t q = from; q < to; ++q) others.push_back(q);
             }
             std::vector<int> joined;
-            for (std::size_t p = first_in(cell);
-                 p < patch.size() && pieces.cell_of(patch[p]) == cell; ++p) {
+            for (std::size_t p = range[n].first; p < range[n].second; ++p) {
                 if (joined.empty() || joined[0] != patch[p].piece) {
                     joined = pieces.joined_around(patch[p].piece);
                 }

@@ -129,6 +129,35 @@ Triangle corners_of(const TriMesh& mesh, const std::vector<Vec3>& at, int triang
     return {at[t[0]], at[t[1]], at[t[2]]};
 }
 
+// Parts that cross each other hold together there.
+void join_crossing(const TriMesh& mesh, const std::vector<Vec3>& at, const Vec3i& cell,
+                   const CellPart* part, int count, DisjointSets& sets) {
+    std::vector<int> number;
+    if (sets.number_sets(number) < 2) return;
+    std::vector<Triangle> triangle;
+    std::vector<Box> box(count);
+    std::vector<int> order(count);
+    const Vec3 low = cell.cast<double>(), high = low + Vec3::Ones();
+    for (int n = 0; n < count; ++n) {
+        triangle.push_back(corners_of(mesh, at, part[n].triangle));
+        for (const Vec3& p : triangle[n]) box[n].grow(p);
+        box[n] = {box[n].low.cwiseMax(low), box[n].high.cwiseMin(high)};
+        order[n] = n;
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return box[a].low.x() < box[b].low.x(); });
+    for (int n = 0; n < count; ++n) {
+        const int a = order[n];
+        for (int m = n + 1; m < count && box[order[m]].low.x() <= box[a].high.x(); ++m) {
+            const int b = order[m];
+            if (number[a] != number[b] && box[a].overlaps(box[b]) &&
+                cross_in(cell, triangle[a], triangle[b])) {
+                sets.unite(a, b);
+            }
+        }
+    }
+}
+
 // Of 26: walls that meet at an edge go about different ways.
 int way_of(const Vec3& normal) {
     const double most = normal.cwiseAbs().maxCoeff();
@@ -181,15 +210,7 @@ void SurfacePieces::add_cell(const TriMesh& mesh, const std::vector<Vec3>& at,
     for (std::size_t s = 1; s < sides.size(); ++s) {
         if (sides[s].key == sides[s - 1].key) sets.unite(sides[s].part, sides[s - 1].part);
     }
-    // Parts that cross each other hold together there.
-    for (int a = 0; a < count; ++a) {
-        const Triangle one = corners_of(mesh, at, first[a].triangle);
-        for (int b = 0; b < a; ++b) {
-            if (sets.root(a) == sets.root(b)) continue;
-            const Triangle other = corners_of(mesh, at, first[b].triangle);
-            if (cross_in(cells_[cell], one, other)) sets.unite(a, b);
-        }
-    }
+    join_crossing(mesh, at, cells_[cell], first, count, sets);
     std::vector<int> piece;
     const int known = static_cast<int>(cell_of_piece_.size());
     cell_of_piece_.resize(known + sets.number_sets(piece), cell);
