@@ -133,8 +133,8 @@ TEST_CASE("a mistake that only the mesh shows has its place in JSON, as those be
         return json.at("mistakes").at(0);
     };
     put_text(scene, bytes_of(scene) + "[[stage]]\nmachine = \"bend\"\n");
-    Json json = mistake("mold.across=5000");  // of the scene as a whole
-    CHECK(json.value("file", "") == scene.string());
+    Json json = mistake("mold.across=5000");
+    CHECK(json.value("file", "") == "--set mold.across=5000");
     CHECK(json.value("line", -1) == 0);
     CHECK(json.value("column", -1) == 0);
     CHECK(json.at("text").get<std::string>().find("small.toml") == std::string::npos);
