@@ -6,11 +6,12 @@
 
 #include "matter/cell_gradient.h"
 #include "matter/parted.h"
-#include "matter/point_on_piece.h"
 
 namespace swage {
 
 namespace {
+
+constexpr double kLeast = 1e-3;  // a corner that weighs nothing is on a side too
 
 std::array<ParticleId, 8> corners_of(const std::array<ParticleId, 4>& row) {
     std::array<ParticleId, 8> corner;
@@ -22,7 +23,6 @@ std::array<ParticleId, 8> corners_of(const std::array<ParticleId, 4>& row) {
 // have gone, most of all.
 CornerMask own_corners(const Aggregate& matter, const std::array<ParticleId, 8>& corner,
                        const std::array<double, 8>& weight, CornerMask side) {
-    constexpr double kLeast = 1e-3;  // a corner that weighs nothing is on a side too
     const CornerGroups groups = corner_groups(matter, corner);
     for (const CornerMask on : {side, kAllCorners}) {
         CornerMask heaviest = 0;
@@ -121,7 +121,6 @@ PointCarriage carriage_by(const Aggregate& matter, std::size_t point, CornerMask
 SurfacePoints::Carriers PointCarriage::carriers() const {
     SurfacePoints::Carriers by{corners_of(row), trilinear_weights(place)};
     if (corners == kAllCorners) return by;
-    constexpr double kLeast = 1e-3;
     double sum = 0;
     for (int c = 0; c < 8; ++c) {
         by.weight[c] = corners >> c & 1 ? std::max(by.weight[c], 0.0) + kLeast : 0;

@@ -31,6 +31,10 @@ struct PointCarriage {
 // side, by weights that keep force and moment. Where no blade has told sides, as of a crack, the
 // new surface lies half-way.
 PointCarriage carriage_on_side(const Aggregate& matter, std::size_t point);
+// Of a point part of whose patch lies on this piece: by the corners that its cell has of that.
+// Where it has none, as above.
+PointCarriage carriage_on_piece(const Aggregate& matter, std::size_t point, const Pieces& pieces,
+                                int piece);
 
 // The corners of a point's cell on its side of a surface that parts that.
 struct PointSide {

@@ -81,11 +81,6 @@ class SurfaceCells {
     std::vector<std::vector<std::size_t>> row_;  // first patch of each, and the end
 };
 
-bool comes_before(const Vec3i& a, const Vec3i& b) {
-    if (a.z() != b.z()) return a.z() < b.z();
-    return a.y() != b.y() ? a.y() < b.y() : a.x() < b.x();
-}
-
 std::vector<Vec3i> with_those_around(const std::vector<Vec3i>& cells) {
     std::vector<Vec3i> all;
     all.reserve(27 * cells.size());

@@ -23,10 +23,6 @@ namespace {
 
 constexpr double kTouch = 1e-9;  // [cells]
 
-auto order_of(const Vec3i& cell) { return std::tuple(cell.z(), cell.y(), cell.x()); }
-
-bool comes_before(const Vec3i& a, const Vec3i& b) { return order_of(a) < order_of(b); }
-
 int place_of(const std::vector<Vec3i>& cells, const Vec3i& cell) {
     const auto at = std::lower_bound(cells.begin(), cells.end(), cell, comes_before);
     return at != cells.end() && *at == cell ? static_cast<int>(at - cells.begin()) : -1;
@@ -167,6 +163,10 @@ int way_of(const Vec3& normal) {
 }
 
 }  // namespace
+
+bool comes_before(const Vec3i& a, const Vec3i& b) {
+    return std::tuple(a.z(), a.y(), a.x()) < std::tuple(b.z(), b.y(), b.x());
+}
 
 SurfacePieces::SurfacePieces(const TriMesh& mesh, const MoldFrame& frame,
                              const std::vector<Vec3i>& cells)

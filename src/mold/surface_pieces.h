@@ -14,6 +14,8 @@ namespace swage {
 
 struct CellPart;
 
+bool comes_before(const Vec3i& a, const Vec3i& b);  // of cells: by z, y, x
+
 // What of a piece of surface faces about one way.
 struct FacingPatch {
     int piece;
@@ -24,7 +26,7 @@ struct FacingPatch {
 
 class SurfacePieces {
   public:
-    // Of the surface in these cells, sorted by z, y, x. A piece is what hangs together in one cell.
+    // Of the surface in these cells, sorted. A piece is what hangs together in one cell.
     SurfacePieces(const TriMesh& mesh, const MoldFrame& frame, const std::vector<Vec3i>& cells);
 
     const std::vector<FacingPatch>& patches() const { return patch_; }  // sorted by cell

@@ -174,6 +174,7 @@ int Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
     std::vector<SeverEvent> events;
     if (at.plan.empty()) {
         events = crossed(*at.matter, std::array{from, to});
+        if (events.empty()) return 0;
         name_blades(events, *at.matter, apparatus, std::array{from, to});
         at.sides = sides_of(*at.matter, events, swept_triangles(apparatus, std::array{from, to}));
     } else {

@@ -437,13 +437,14 @@ MoveOutcome EnergySteps::advance(const Drive& from, const Drive& to) {
     outcome.body.assign(mover_.size(), BodyOutcome(apparatus_, pushes(0).count()));
     outcome.shortest_step = to.time - from.time;
     for (std::size_t b = 0; b < mover_.size(); ++b) mover_[b].body.start(from, outcome.body[b]);
-    Begun all = begun(outcome);
     const std::vector<Group> apart = groups(from, to);
+    std::optional<Begun> all;
+    if (apart.size() > 1) all = begun(outcome);
     for (const Group& group : apart) {
         outcome.given_up = advance(group, from, to, outcome);
         if (!outcome.given_up) continue;
-        if (apart.size() > 1) {  // the others have got to other times
-            put_back(all, from, outcome);
+        if (all) {  // the others have got to other times
+            put_back(*all, from, outcome);
             outcome.given_up->at = from;
         }
         break;

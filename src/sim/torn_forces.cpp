@@ -6,7 +6,6 @@
 
 #include "base/parallel.h"
 #include "matter/parted.h"
-#include "matter/point_on_piece.h"
 
 namespace swage {
 
