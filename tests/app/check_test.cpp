@@ -180,40 +180,29 @@ TEST_CASE("a fineness that does not fit the mesh is told where the scene says it
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 1);  // its [mold] is lines 5 and 6
     const std::string text = bytes_of(scene);
-    const auto with = [&](const std::string& mold) {
+    const auto check = [&](const std::string& mold, const std::vector<std::string>& more, int code,
+                           const std::string& words) {
         std::string other = text;
         other.replace(other.find("across = 2"), 10, mold);
         put_text(scene, other);
-        return run_swage({"check", scene.string()});
+        std::vector<std::string> arguments = {"check", scene.string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome told = run_swage(arguments);
+        INFO(mold << ": " << told.err);
+        CHECK(told.code == code);
+        CHECK(says(told.err, words));
     };
-    Outcome told = with("spacing = \"10 m\"");
-    INFO(told.err);
-    CHECK(told.code == 4);
-    CHECK(says(told.err, "small.toml:6:11: cannot mold: the mesh is 0.02 m across"));
-    told = with("across = 100000");
-    CHECK(told.code == 7);
-    CHECK(says(told.err, "small.toml:6:10: refused to mold"));
-    told = with("cell_limit = 3");
-    CHECK(told.code == 7);
-    CHECK(says(told.err, "small.toml:6:14: refused to mold"));
-    told = with("across = 2\n[[body]]\nfile = \"bar.obj\"\nat = [0, 1, 0]\nspacing = 3");
-    CHECK(told.code == 4);
-    CHECK(says(told.err, "small.toml:10:11: body-2: cannot mold"));
-    told = with("cell_limit = 1_000_000_001");
-    CHECK(told.code == 3);
-    CHECK(says(told.err, "it must be 1 to 1000000000"));
-    // Set on the command line; and of what the work-piece says another body is too thin for.
-    put_text(scene, text);
-    told = run_swage({"check", scene.string(), "--set", "mold.spacing=1 m"});
-    CHECK(told.code == 4);
-    CHECK(says(told.err, "--set mold.spacing=1 m: cannot mold"));
-    told =
-        with("spacing = \"1 cm\"\n[[body]]\nfile = \"bar.obj\"\nlength = \"2 cm\"\nat = [0, 1, 0]");
-    CHECK(told.code == 4);
-    CHECK(says(told.err, "small.toml:6:11: body-2: cannot mold"));
-    // Of the default nothing is said in the scene.
-    told = with("kind = \"block\"");
-    CHECK(told.code == 0);
+    check("spacing = \"10 m\"", {}, 4, "small.toml:6:11: cannot mold: the mesh is 0.02 m across");
+    check("across = 100000", {}, 7, "small.toml:6:10: refused to mold");
+    check("cell_limit = 3", {}, 7, "small.toml:6:14: refused to mold");
+    check("cell_limit = 1_000_000_001", {}, 3, "it must be 1 to 1000000000");
+    check("across = 2", {"--set", "mold.spacing=1 m"}, 4, "--set mold.spacing=1 m: cannot mold");
+    // Of another body, which says it itself or is too thin for what the work-piece says.
+    const std::string body = "\n[[body]]\nfile = \"bar.obj\"\nat = [0, 1, 0]\n";
+    check("across = 2" + body + "spacing = 3", {}, 4, "small.toml:10:11: body-2: cannot mold");
+    check("spacing = \"1 cm\"" + body + "length = \"2 cm\"", {}, 4,
+          "small.toml:6:11: body-2: cannot mold");
+    check("kind = \"block\"", {}, 0, "");  // of the default nothing is said
 }
 
 TEST_CASE("of many bodies that are alike each thing is said once, by check and by the run") {

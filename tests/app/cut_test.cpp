@@ -11,6 +11,7 @@
 #include "skin/new_look.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/box_obj.h"
 #include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
@@ -203,28 +204,15 @@ namespace {
 
 // Boxes of `size` [m], their low corners at every `step` of it from 0 on.
 std::string boxes_obj(const swage::Vec3i& count, const swage::Vec3& size, const swage::Vec3& step) {
-    std::string vertex, face;
-    int first = 1;
+    std::string text;
+    int before = 0;
     for (int i = 0; i < count[0]; ++i)
         for (int j = 0; j < count[1]; ++j)
-            for (int k = 0; k < count[2]; ++k, first += 8) {
+            for (int k = 0; k < count[2]; ++k, before += 8) {
                 const swage::Vec3 low = step.cwiseProduct(swage::Vec3(i, j, k));
-                for (int c = 0; c < 8; ++c) {
-                    const swage::Vec3 at =
-                        low + size.cwiseProduct(swage::Vec3(c & 1, c >> 1 & 1, c >> 2));
-                    vertex += fmt::format("v {} {} {}\n", at[0], at[1], at[2]);
-                }
-                for (const std::array<int, 4>& f : {std::array{0, 2, 3, 1},
-                                                    {4, 5, 7, 6},
-                                                    {0, 1, 5, 4},
-                                                    {2, 6, 7, 3},
-                                                    {0, 4, 6, 2},
-                                                    {1, 3, 7, 5}}) {
-                    face += fmt::format("f {} {} {} {}\n", f[0] + first, f[1] + first, f[2] + first,
-                                        f[3] + first);
-                }
+                text += swage::test::box_obj(low, low + size, before);
             }
-    return vertex + face;
+    return text;
 }
 
 }  // namespace

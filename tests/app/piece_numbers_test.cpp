@@ -12,31 +12,14 @@
 #include "pipeline/run_record.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
+#include "tests/shared/box_obj.h"
 #include "tests/shared/json.h"
 #include "tests/shared/scratch.h"
 
 namespace fs = std::filesystem;
+using swage::test::box_obj;
 
 namespace {
-
-std::string box_obj(const std::string& name, const swage::Vec3& low, const swage::Vec3& high,
-                    int first) {
-    std::string text = name.empty() ? "" : "o " + name + "\n";
-    for (int c = 0; c < 8; ++c) {
-        text += fmt::format("v {} {} {}\n", c & 1 ? high[0] : low[0], c & 2 ? high[1] : low[1],
-                            c & 4 ? high[2] : low[2]);
-    }
-    for (const std::array<int, 4>& f : {std::array{0, 2, 3, 1},
-                                        {4, 5, 7, 6},
-                                        {0, 1, 5, 4},
-                                        {2, 6, 7, 3},
-                                        {0, 4, 6, 2},
-                                        {1, 3, 7, 5}}) {
-        text +=
-            fmt::format("f {} {} {} {}\n", f[0] + first, f[1] + first, f[2] + first, f[3] + first);
-    }
-    return text;
-}
 
 struct Surface {
     double area = 0;
@@ -110,13 +93,13 @@ struct Line {
 
 TEST_CASE("the number of a piece is that of its object, of however many shells it is") {
     // A part in a gap of less than a cell above another: both are one body of two shells.
-    const std::string bar = box_obj("bar", {0, 0, 0}, {.3, .06, .06}, 1),
-                      stud = bar + box_obj("stud", {.262, .0605, .012}, {.295, .09, .048}, 9);
+    const std::string bar = box_obj({0, 0, 0}, {.3, .06, .06}, 0, "bar"),
+                      stud = bar + box_obj({.262, .0605, .012}, {.295, .09, .048}, 8, "stud");
     // That a blade goes through both of, and that it goes between.
-    const std::string two = box_obj("", {0, 0, 0}, {.2, .04, .03}, 1) +
-                            box_obj("", {0, 0, .07}, {.2, .04, .1}, 9),
-                      layers = box_obj("", {0, 0, 0}, {.08, .02, .08}, 1) +
-                               box_obj("", {0, .023, 0}, {.08, .043, .08}, 9);
+    const std::string two = box_obj({0, 0, 0}, {.2, .04, .03}) +
+                            box_obj({0, 0, .07}, {.2, .04, .1}, 8),
+                      layers = box_obj({0, 0, 0}, {.08, .02, .08}) +
+                               box_obj({0, .023, 0}, {.08, .043, .08}, 8);
     const std::string other =
         "[[body]]\nname = \"other\"\nfile = \"mesh.obj\"\n"
         "at = [\"15 cm\", \"4.5 cm\", \"12 cm\"]\n";

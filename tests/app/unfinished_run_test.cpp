@@ -177,8 +177,9 @@ std::map<std::string, double> last_row(const fs::path& table) {
     return row;
 }
 
-// Of the nearest vertex of an OBJ.
-double distance_to_mesh(const fs::path& file, const std::array<double, 3>& place) {
+// From the probe "tip" of a row to the nearest vertex of an OBJ.
+double tip_off_mesh(std::map<std::string, double> row, const fs::path& file) {
+    const std::array place = {row["tip x [m]"], row["tip y [m]"], row["tip z [m]"]};
     std::istringstream lines(bytes_of(file));
     double least = 1e9;
     for (std::string line; std::getline(lines, line);) {
@@ -187,6 +188,23 @@ double distance_to_mesh(const fs::path& file, const std::array<double, 3>& place
         least = std::min(least, std::hypot(x - place[0], y - place[1], z - place[2]));
     }
     return least;
+}
+
+// What is told of a stage that stops.
+struct Stopped {
+    Outcome outcome;
+    Json record, stage;
+    std::map<std::string, double> row;  // the last of its table
+};
+Stopped run_until_stopped(const fs::path& scene, const fs::path& run) {
+    Stopped told{
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"}), {}, {}, {}};
+    INFO(told.outcome.err);
+    REQUIRE(told.outcome.code == 6);
+    told.record = parse_json(bytes_of(run / "run.json"));
+    told.stage = told.record.at("stages").back();
+    told.row = last_row(run / "curves" / (told.stage.at("name").get<std::string>() + ".csv"));
+    return told;
 }
 
 constexpr const char* kTip = "[[probe]]\nname = \"tip\"\nat = [1, 1, 1]\n";
@@ -206,12 +224,8 @@ TEST_CASE("of a stage that stops all is told of one time, its first frame too") 
                         "[[stage]]\nmachine = \"hold\"\niteration_limit = 500\nframes = " +
                         std::to_string(frames) + "\n[[stage.load]]\non = \"right\"\n" +
                         "force = [0, \"-20 kN\", 0]\nstrength = \"" + strength + "\"\n");
-    const Outcome outcome =
-        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    auto [outcome, record, stage, row] = run_until_stopped(scene, run);
     INFO(outcome.err);
-    REQUIRE(outcome.code == 6);
-    auto row = last_row(run / "curves/2-hold.csv");
-    const Json record = parse_json(bytes_of(run / "run.json")), stage = record.at("stages").at(1);
     CHECK(record.at("frames") == stage.at("frames").at(1));
     CHECK(stage.at("unfinished_frame") == record.at("frames").get<int>() + 1);
     CHECK(row["frame"] == stage.at("unfinished_frame").get<int>());
@@ -228,8 +242,7 @@ TEST_CASE("of a stage that stops all is told of one time, its first frame too") 
     CHECK(stage.at("energies_by_body_J").size() == 1);
     CHECK(stage.at("iterations").get<int>() > 500);
     // Its corner lies where its mesh has it.
-    CHECK(distance_to_mesh(run / "meshes/2-hold.obj",
-                           {row["tip x [m]"], row["tip y [m]"], row["tip z [m]"]}) < 2e-3);
+    CHECK(tip_off_mesh(row, run / "meshes/2-hold.obj") < 2e-3);
 }
 
 TEST_CASE("what a stage did in motion before it stopped is told, of its first frame too") {
@@ -240,12 +253,8 @@ TEST_CASE("what a stage did in motion before it stopped is told, of its first fr
                         "[material]\nname = \"glass\"\n[mold]\nacross = 2\n" + kTip +
                         "[[stage]]\nmachine = \"floor\"\ndrop = \"1 cm\"\nduration = \"2 ms\"\n"
                         "gravity = 9.81\nframes = 2\nretry_limit = 0\n");
-    const Outcome outcome =
-        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    auto [outcome, record, stage, row] = run_until_stopped(scene, run);
     INFO(outcome.err);
-    REQUIRE(outcome.code == 6);
-    auto row = last_row(run / "curves/1-floor.csv");
-    const Json stage = parse_json(bytes_of(run / "run.json")).at("stages").at(0);
     CHECK(stage.at("frames") == Json({2, 1}));
     CHECK(stage.at("unfinished_frame") == 2);
     CHECK(row["frame"] == 2);
@@ -254,8 +263,7 @@ TEST_CASE("what a stage did in motion before it stopped is told, of its first fr
     CHECK(stage.at("energies_by_body_J").size() == 1);
     CHECK(stage.at("energies_J").at("kinetic_at_start").get<double>() > 0);
     // It has gone 1 cm down since it began.
-    CHECK(distance_to_mesh(run / "meshes/1-floor.obj",
-                           {row["tip x [m]"], row["tip y [m]"], row["tip z [m]"]}) < 2e-3);
+    CHECK(tip_off_mesh(row, run / "meshes/1-floor.obj") < 2e-3);
 }
 
 TEST_CASE("where steps that energy chooses give up, all bodies are told of one time") {
@@ -273,15 +281,10 @@ TEST_CASE("where steps that energy chooses give up, all bodies are told of one t
                         (with_another ? "[[body]]\nfile = \"bar.obj\"\nat = [0, 0, 0]\n" : "") +
                         "[[stage]]\nmachine = \"floor\"\ndrop = 10\ngravity = 0\nframes = 5\n"
                         "duration = 0.1\nsolver = \"energy-stepped\"\n");
-    const Outcome outcome =
-        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    auto [outcome, record, stage, row] = run_until_stopped(scene, run);
     INFO(outcome.err);
-    REQUIRE(outcome.code == 6);
-    auto row = last_row(run / "curves/1-floor.csv");
-    const Json stage = parse_json(bytes_of(run / "run.json")).at("stages").at(0);
     CHECK(stage.at("unfinished_frame") == static_cast<int>(row["frame"]));
-    CHECK(distance_to_mesh(run / "meshes/1-floor-work-piece.obj",
-                           {row["tip x [m]"], row["tip y [m]"], row["tip z [m]"]}) < 2e-3);
+    CHECK(tip_off_mesh(row, run / "meshes/1-floor-work-piece.obj") < 2e-3);
 }
 
 TEST_CASE("a fresh run that cannot start leaves the run that was there, one that can replaces it") {

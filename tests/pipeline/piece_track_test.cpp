@@ -40,6 +40,20 @@ std::vector<int> of_boxes(const PieceTrack& track, int skin, const TriMesh& mesh
     return piece;
 }
 
+// A frame of each of them.
+fs::path put_store(const Scratch& scratch, const std::vector<TriMesh>& skins) {
+    const fs::path file = scratch.path() / "motion.bin";
+    FrameStoreWriter writer(file);
+    writer.add_machine({});
+    for (const TriMesh& skin : skins) {
+        StoredFrame frame;
+        frame.body = {{writer.add_skin(skin), skin.position}};
+        writer.add_frame(frame);
+    }
+    writer.finish();
+    return file;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -83,17 +97,7 @@ TEST_CASE("pieces are numbered by what they come to be, and a body is the first 
     // The larger part is broken again, so that the other becomes the largest.
     const std::vector<TriMesh> skins = {boxes({{0, 10}}), boxes({{0, 4}, {4, 10}}),
                                         boxes({{0, 4}, {4, 7}, {7, 10}})};
-    {
-        FrameStoreWriter writer(scratch.path() / "motion.bin");
-        writer.add_machine({});
-        for (const TriMesh& skin : skins) {
-            StoredFrame frame;
-            frame.body = {{writer.add_skin(skin), skin.position}};
-            writer.add_frame(frame);
-        }
-        writer.finish();
-    }
-    const FrameStore store(scratch.path() / "motion.bin");
+    const FrameStore store(put_store(scratch, skins));
     const int box = kTrianglesOfBox;
     const PieceTrack by_volume(store), told(store, {{3, {{2 * box}, {1}, {box + 5}}}}),
         of_another_time(store, {{2, {{2 * box}, {1}, {box + 5}}}}),
@@ -108,24 +112,6 @@ TEST_CASE("pieces are numbered by what they come to be, and a body is the first 
     CHECK(of_boxes(told, 1, skins[1]) == std::vector<int>{1, 0});
     CHECK(of_boxes(told, 2, skins[2]) == std::vector<int>{1, 2, 0});
 }
-
-namespace {
-
-// A frame of each of them.
-fs::path put_store(const Scratch& scratch, const std::vector<TriMesh>& skins) {
-    const fs::path file = scratch.path() / "motion.bin";
-    FrameStoreWriter writer(file);
-    writer.add_machine({});
-    for (const TriMesh& skin : skins) {
-        StoredFrame frame;
-        frame.body = {{writer.add_skin(skin), skin.position}};
-        writer.add_frame(frame);
-    }
-    writer.finish();
-    return file;
-}
-
-}  // namespace
 
 TEST_CASE("a body of several shells is one piece as it starts") {
     const Scratch scratch;
