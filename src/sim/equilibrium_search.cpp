@@ -150,7 +150,7 @@ Relaxation EquilibriumSearch::solve_smooth(StaticForces& forces, const StaticMov
                                            double accuracy) {
     NewtonProblem problem =
         problem_of(forces, move.to, accuracy, RestingContacts::Slipping::free, forces.hold);
-    problem.gives_way = move.gives_way;
+    problem.gives_way = has_buckled_;
     const Newton::Result found = newton_->solve(forces.matter, std::move(problem));
     look_around(forces, move.to);  // steps that were not kept have met other things
     const bool converged = found.converged && forces.mirrored == 0;
@@ -254,7 +254,7 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         if (!(drive > 0)) break;
         move.rest = x;
         newton_rests_ = 0;  // it may have failed for what gives way here
-        move.gives_way = true;
+        has_buckled_ = true;
         again(std::clamp(kDriven * drive, kFinest * tolerance_, tolerance_));
         // What falls far takes long.
         for (int more = 0; more < kMostTurns && !result.converged; ++more) {

@@ -27,7 +27,7 @@ class EquilibriumSearch {
 
     template <typename Io>
     void visit(Io& io, const StaticForces& forces) {  // what steps change, where these are known
-        io(newton_rests_, newton_pause_, enough_hold_, begun_at_);
+        io(newton_rests_, newton_pause_, enough_hold_, begun_at_, has_buckled_);
         bool has_coarse = coarse_.has_value();
         io(has_coarse);
         if constexpr (Io::kReads) {
@@ -49,8 +49,9 @@ class EquilibriumSearch {
     // moves to go, and the last such pause.
     int newton_rests_ = 0, newton_pause_ = 0;
     std::optional<CoarseSpace> coarse_;  // from the first relaxation on
-    double enough_hold_ = 1;  // share of the drag that held nothing back in the last relaxation
-    Vec3Array begun_at_;      // positions, when the stage began
+    double enough_hold_ = 1;    // share of the drag that held nothing back in the last relaxation
+    Vec3Array begun_at_;        // positions, when the stage began
+    bool has_buckled_ = false;  // since then
 };
 
 }  // namespace swage

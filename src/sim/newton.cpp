@@ -19,8 +19,9 @@ constexpr int kMostTries = 12;        // of the length of a step
 constexpr struct {
     double geometric, firmer;  // by a share of the diagonal
 } kPrepared[] = {{1, 0}, {0, 0}, {0, 0.01}, {0, 0.1}};
-constexpr double kStrains = 0.02;     // of what it falls by: less is a turn of the whole
-constexpr double kFalls = 0.01;       // of the matter's own stiffness: less is no instability
+// Of the matter's own stiffness: less than the one below zero is no instability, more than the
+// other is a turn of the whole, which strains nothing.
+constexpr double kFalls = 0.01, kTurns = 50;
 constexpr double kDownhill = 2;       // spacings, where the curvature is negative
 constexpr double kFarthest = 0.1;     // of the body, for what leaves an equilibrium
 constexpr double kProbe = 0.05;       // spacings, to find how that bends
@@ -158,22 +159,18 @@ Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {
 // Goes as far as the forces still work along the way; they are found there. Returns the share of
 // the direction gone, 0 when nowhere is better. Where the body leaves an equilibrium that does not
 // hold, forces on the way say nothing of how far it will go: there it goes all the way, bent as the
-// matter would go by itself, for straight ways stretch what is slender.
+// matter would go by itself, for straight ways stretch what is slender. What has been stretched so,
+// in a body that has buckled, comes back first.
 double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool turns) {
     from_ = matter.particle_position;
     const double start = dot(force_, direction_);
     if (!(start > 0)) return 0;
-    const bool bends = falls_ && !turns && find_bend(matter, problem);
+    const bool stretched = problem.gives_way && problem.residual(force_) > 1;
+    const bool bends = falls_ && !turns && !stretched && find_bend(matter, problem);
     const Way way = way_of(matter, turns);
     Vec3Array& x = matter.particle_position;
     double share = 1;
-    if (bends) {
-        const double far = longest_of(direction_);
-        share = std::min(1.0, kFarthest * extent_ / far);
-        // Where its square takes it farther than the way itself, that says nothing any more. NOTE:
-        // matter that flows and only softens for a while would take many short steps for it.
-        if (problem.gives_way) share = std::min(share, far / longest_of(bent_));
-    }
+    if (bends) share = std::min(1.0, kFarthest * extent_ / longest_of(direction_));
     for (int n = 0; n < kMostTries; ++n) {
         const Mat3 turned = turn_by(share * way.turn).toRotationMatrix();
         for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
@@ -228,17 +225,11 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
             product(matter, problem, {Flow::trial, geometric}, from, to);
         };
     };
-    const SoftMode::Map exact = times(1), prepared = times(prepared_.kind.geometric);
+    const SoftMode::Map prepared = times(prepared_.kind.geometric);
     firmness_ = softest_.follow(
-        matter.particle_position, matter.particle_mass, free_motions(matter, problem.held), exact,
-        [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
-    if (!(firmness_ < 0)) return false;
-    // A motion that does not strain the matter is no buckling, nor is one that hardly falls.
-    times(0)(softest_.motion(), image_);
-    const double material = dot(softest_.motion(), image_);
-    times(1)(softest_.motion(), better_);
-    const double whole = dot(softest_.motion(), better_);
-    return whole < -kFalls * material && material > -kStrains * whole;
+        matter.particle_position, matter.particle_mass, free_motions(matter, problem.held), times(1),
+        times(0), [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
+    return firmness_ < -kFalls && firmness_ > -kTurns;
 }
 
 Newton::Astray Newton::astray(const Aggregate& matter, const Vec3Array& force,
@@ -253,7 +244,7 @@ Newton::Astray Newton::astray(const Aggregate& matter, const Vec3Array& force,
     }
     const double longest = longest_of(way);
     return {.gone = std::abs(gone / size) * longest,
-            .left = std::abs(dot(force, way) / (firmness_ * size)) * longest};
+            .left = std::abs(dot(force, way) / firmness_) * longest};
 }
 
 Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
@@ -262,7 +253,8 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
     const bool turns = problem.held.empty() && !problem.held_now;
     tangent_.moved();
     falls_ = false;
-    for (result.steps = 0; result.steps < (falls_ ? kMostFalling : kMostSteps); ++result.steps) {
+    const auto most = [&] { return falls_ || problem.gives_way ? kMostFalling : kMostSteps; };
+    for (result.steps = 0; result.steps < most(); ++result.steps) {
         result.residual = problem.residual(force_);
         if (!std::isfinite(result.residual)) break;
         result.converged = result.residual <= problem.tolerance;

@@ -26,7 +26,7 @@ struct NewtonProblem {
     std::function<std::vector<HeldPoint>()> held_now;
     std::vector<double> diagonal;  // of each particle, no less than its stiffness [N/m]
     std::vector<double> drag;      // springs to where the particles began [N/m]
-    bool gives_way = false;        // as a body that has buckled does: it may fall far
+    bool gives_way = false;        // as a body that has buckled does: it may go far
 };
 
 class Newton {
@@ -100,7 +100,7 @@ class Newton {
     bool falls_ = false;  // some direction has had negative curvature
     Prepared prepared_;
     SoftMode softest_;
-    double firmness_ = 0;  // of the softest motion, when last looked at
+    double firmness_ = 0;  // what is left of the softest motion's, when last looked at
     Vec3Array force_, direction_, residual_, search_, image_, better_, from_, bent_;
 };
 

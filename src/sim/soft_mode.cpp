@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/soft_mode.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <utility>
@@ -13,9 +14,9 @@ namespace swage {
 namespace {
 
 constexpr int kMostRounds = 12;
-// Of the quotient: what the last round may have changed, at first and where a motion is followed.
-// NOTE: two rounds each found 0.003 and rising where it was -0.055 already.
-constexpr double kSettled = 1e-3, kFollowed = 0.02;
+// Of the share that is left: what the last round may have changed. NOTE: two rounds each found
+// 0.003 and rising where it was -0.055 already.
+constexpr double kSettled = 0.02;
 
 // Half waves across the longest axis, of both lateral directions and no symmetry.
 Vec3Array first_guess(const Vec3Array& x) {
@@ -41,10 +42,16 @@ Vec3Array first_guess(const Vec3Array& x) {
     return guess;
 }
 
+// A motion, and what the whole stiffness and the matter's own make of it.
+struct Followed {
+    Vec3Array way, force, own;
+};
+
 }  // namespace
 
 double SoftMode::follow(const Vec3Array& position, const std::vector<double>& mass,
-                        const std::vector<Vec3Array>& free, const Map& product, const Map& solve) {
+                        const std::vector<Vec3Array>& free, const Map& product,
+                        const Map& of_matter, const Map& solve) {
     const std::size_t count = position.size();
     const auto with_mass = [&](const Vec3Array& a, const Vec3Array& b) {
         return chunked_sum(count, [&](std::size_t p) { return mass[p] * a.at(p).dot(b.at(p)); });
@@ -52,60 +59,59 @@ double SoftMode::follow(const Vec3Array& position, const std::vector<double>& ma
     const auto take_free = [&](Vec3Array& way) {
         for (const Vec3Array& f : free) combine(1, -with_mass(f, way), f, way);
     };
-    double settled = kFollowed;
     if (motion_.size() != count) {
         motion_ = first_guess(position);
         last_.resize(0);
-        settled = kSettled;
     }
-    // Kept of one length: that of a unit mass.
-    Vec3Array image, last_image, rest, way, way_image;
-    take_free(motion_);
-    if (last_.size() == count) take_free(last_);
-    combine(1 / std::sqrt(with_mass(motion_, motion_)), 0, motion_, motion_);
-    product(motion_, image);
-    if (last_.size() == count) product(last_, last_image);
-    double quotient = dot(motion_, image);
+    Followed motion{motion_, {}, {}}, last{last_, {}, {}}, way;
+    const auto look_at = [&](Followed& f) {
+        take_free(f.way);
+        product(f.way, f.force);
+        of_matter(f.way, f.own);
+        const double own = dot(f.way, f.own);
+        if (!(own > 0) || !std::isfinite(own)) return false;
+        const double scale = 1 / std::sqrt(own);
+        for (Vec3Array* a : {&f.way, &f.force, &f.own}) combine(scale, 0, *a, *a);
+        return true;
+    };
+    if (!look_at(motion)) return 1;
+    bool has_last = last.way.size() == count && look_at(last);
+    double left = dot(motion.way, motion.force);
     for (int round = 0; round < kMostRounds; ++round) {
-        rest = image;
-        for_each_chunk(count, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p) {
-                rest.add(p, -quotient * mass[p] * motion_.at(p));
-            }
-        });
-        solve(rest, way);
-        take_free(way);
-        const double size = with_mass(way, way);
-        if (!(size > 0) || !std::isfinite(size)) return quotient;
-        combine(1 / std::sqrt(size), 0, way, way);
-        product(way, way_image);
-        const Vec3Array *basis[3] = {&motion_, &way, &last_},
-                        *images[3] = {&image, &way_image, &last_image};
-        const int known = last_.size() == count ? 3 : 2;
-        Eigen::MatrixXd stiffness(known, known), inertia(known, known);
+        Vec3Array rest = motion.force;
+        combine(1, -left, motion.own, rest);
+        solve(rest, way.way);
+        if (!look_at(way)) break;
+        const Followed* basis[3] = {&motion, &way, &last};
+        const int known = has_last ? 3 : 2;
+        Eigen::MatrixXd whole(known, known), own(known, known);
         for (int a = 0; a < known; ++a) {
             for (int b = 0; b <= a; ++b) {
-                stiffness(a, b) = stiffness(b, a) = dot(*basis[a], *images[b]);
-                inertia(a, b) = inertia(b, a) = with_mass(*basis[a], *basis[b]);
+                whole(a, b) = whole(b, a) = dot(basis[a]->way, basis[b]->force);
+                own(a, b) = own(b, a) = dot(basis[a]->way, basis[b]->own);
             }
         }
-        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness, inertia);
-        if (modes.info() != Eigen::Success) {  // the last step has come to say nothing new
-            last_.resize(0);
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(whole, own);
+        if (own.llt().info() != Eigen::Success || modes.info() != Eigen::Success) {
+            if (!has_last) break;
+            has_last = false;  // the last step has come to say nothing new
             continue;
         }
         const Eigen::VectorXd share = modes.eigenvectors().col(0);
-        const double old = std::exchange(quotient, modes.eigenvalues()[0]);
+        const double old = std::exchange(left, modes.eigenvalues()[0]);
         // The step: all but the share of the motion itself.
-        const double of_last = known == 3 ? share[2] : 0;
-        if (known == 2) set_zero(count, last_), set_zero(count, last_image);
-        combine(of_last, share[1], way, last_);
-        combine(of_last, share[1], way_image, last_image);
-        combine(share[0], 1, last_, motion_);
-        combine(share[0], 1, last_image, image);
-        if (std::abs(old - quotient) <= settled * std::abs(quotient)) break;
+        if (!has_last) last = way;
+        const double of_last = has_last ? share[2] : 0;
+        for (Vec3Array Followed::*a : {&Followed::way, &Followed::force, &Followed::own}) {
+            combine(of_last, share[1], way.*a, last.*a);
+            combine(share[0], 1, last.*a, motion.*a);
+        }
+        has_last = true;
+        if (std::abs(old - left) <= kSettled * std::abs(left)) break;
     }
-    return quotient;
+    motion_ = std::move(motion.way);
+    last_ = has_last ? std::move(last.way) : Vec3Array{};
+    return left;
 }
 
 }  // namespace swage

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The motion to which a body at rest offers the least stiffness for its mass, followed from one
-// equilibrium to the next: when its stiffness falls below zero the body buckles. Locally optimal
-// preconditioned conjugate gradients for one eigenvector (Knyazev, SIAM J. Sci. Comput. 23, 2001).
+// The motion that the stress in a body at rest takes most of the matter's own stiffness from,
+// followed from one equilibrium to the next: when it takes more than all of it the body buckles.
+// Locally optimal preconditioned conjugate gradients for one eigenvector (Knyazev, SIAM J. Sci.
+// Comput. 23, 2001).
+//
+// NOTE: the motion of least stiffness for its mass is another. A broad plate on slender legs swings
+// by itself far more slowly than it sways on them, and was followed while they gave way.
 #pragma once
 
 #include <functional>
@@ -15,13 +19,15 @@ class SoftMode {
   public:
     using Map = std::function<void(const Vec3Array& from, Vec3Array& to)>;
 
-    // Comes closer to the softest motion under this stiffness, of those that have nothing of what
-    // is `free` (sim/free_motions.h); `solve` is about its inverse. Returns the quotient of
-    // stiffness and mass, which is never below the true one [1/s2].
+    // Comes closer to that motion, of those that have nothing of what is `free`
+    // (sim/free_motions.h). `product`: by the whole stiffness; `of_matter`: by the matter's own
+    // and what holds it; `solve` is about the inverse of either. Returns what is left, as a share
+    // of the matter's own, never less than there is; 1 where the matter itself has none.
     double follow(const Vec3Array& position, const std::vector<double>& mass,
-                  const std::vector<Vec3Array>& free, const Map& product, const Map& solve);
+                  const std::vector<Vec3Array>& free, const Map& product, const Map& of_matter,
+                  const Map& solve);
 
-    const Vec3Array& motion() const { return motion_; }  // of any length
+    const Vec3Array& motion() const { return motion_; }  // against which the matter's own is 1
 
     template <typename Io>
     void visit(Io& io) {  // what steps change

@@ -14,10 +14,9 @@ struct StaticMove {
     Vec3Array start, rest{};
     double elastic = 0, booked = 0;  // before it, where that is asked for [J]
     DriveMotion motion{};
-    bool released = false;   // a load grows less, or a tool draws back
-    bool let_go = false;     // nothing moves, but what was cut or lost its grips
-    bool gives_way = false;  // it has been moved the way that it buckles
-    double seated = 0;       // the farthest that any piece was seated before the try [m]
+    bool released = false;  // a load grows less, or a tool draws back
+    bool let_go = false;    // nothing moves, but what was cut or lost its grips
+    double seated = 0;      // the farthest that any piece was seated before the try [m]
 };
 
 struct Relaxation {
