@@ -289,7 +289,7 @@ class StageRun {
         use_.look(number, bodies_);
         curves_->add(number, last_, probes());
         if (body_table_) body_table_->add(number, bodies_, last_);
-        totals_.add(last_, machine_.apparatus.tool.size());
+        totals_.add(number, last_, machine_.apparatus.tool.size());
         for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
         log_verbose("{}, frame {}: {}", stage_.name, number, frame_account(last_));
     }

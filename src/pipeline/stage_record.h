@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "machines/machine.h"
@@ -26,9 +27,14 @@ struct StageTotals : StepCounts {
     double stored = 0;       // at the end of any frame, the most [J]
     bool touched = false;    // by a tool: quasi-static at the end of a leg, in motion of any step
     double entered = 0;      // spacing of what blades went into and severed nothing of; 0: nothing
+    double remainder = 0;    // of the books, by now [J]
+    double snapped = 0;      // the most by which one frame made it more [J]
+    int snapped_in = 0;      // that frame
 
-    void add(const FrameReport& report, std::size_t tools) {
+    void add(int number, const FrameReport& report, std::size_t tools) {
         count(report);
+        const double more = report.remainder - std::exchange(remainder, report.remainder);
+        if (more > snapped) snapped = more, snapped_in = number;
         severed += report.severed;
         broken += report.broken;
         stored = std::max(stored, report.kinetic + report.elastic + report.contact);

@@ -8,6 +8,7 @@
 #include "sim/settling.h"
 #include "sim/surface_forces.h"
 #include "sim/vector_sums.h"
+#include "sim/wrinkled_foam.h"
 
 namespace swage {
 
@@ -236,6 +237,7 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
     }
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(forces.apparatus) || forces.self.presses()) break;
+        if (foam_wrinkles(matter)) break;
         const NewtonProblem problem = buckling_problem(forces, move.to, accuracy);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
         if (!newton_->buckles(matter, problem)) {

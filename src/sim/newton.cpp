@@ -22,10 +22,10 @@ constexpr struct {
 // Of the matter's own stiffness: less than the one below zero is no instability, more than the
 // other is a turn of the whole, which strains nothing.
 constexpr double kFalls = 0.01, kTurns = 50;
-constexpr double kDownhill = 2;       // spacings, where the curvature is negative
-constexpr double kFarthest = 0.1;     // of the body, for what leaves an equilibrium
-constexpr double kProbe = 0.05;       // spacings, to find how that bends
-constexpr double kOvershoot = 0.5;    // of the work along a step that may be left, either way
+constexpr double kDownhill = 2;     // spacings, where the curvature is negative
+constexpr double kFarthest = 0.1;   // of the body, for what leaves an equilibrium
+constexpr double kProbe = 0.05;     // spacings, to find how that bends
+constexpr double kOvershoot = 0.5;  // of the work along a step that may be left, either way
 
 }  // namespace
 
@@ -227,7 +227,7 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     };
     const SoftMode::Map prepared = times(prepared_.kind.geometric);
     firmness_ = softest_.follow(
-        matter.particle_position, matter.particle_mass, free_motions(matter, problem.held), times(1),
+        matter.particle_mass, problem.diagonal, free_motions(matter, problem.held), times(1),
         times(0), [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
     return firmness_ < -kFalls && firmness_ > -kTurns;
 }

@@ -20,22 +20,35 @@ class SoftMode {
     using Map = std::function<void(const Vec3Array& from, Vec3Array& to)>;
 
     // Comes closer to that motion, of those that have nothing of what is `free`
-    // (sim/free_motions.h). `product`: by the whole stiffness; `of_matter`: by the matter's own
-    // and what holds it; `solve` is about the inverse of either. Returns what is left, as a share
-    // of the matter's own, never less than there is; 1 where the matter itself has none.
-    double follow(const Vec3Array& position, const std::vector<double>& mass,
+    // (sim/free_motions.h), and now and then looks whether it is another by now. `mass` and
+    // `stiffness` are those of each particle, the latter about; `product`: by the whole stiffness;
+    // `of_matter`: by the matter's own and what holds it; `solve` is about the inverse of either.
+    // Returns what is left, as a share of the matter's own, never less than there is; 1 where the
+    // matter itself has none.
+    double follow(const std::vector<double>& mass, const std::vector<double>& stiffness,
                   const std::vector<Vec3Array>& free, const Map& product, const Map& of_matter,
                   const Map& solve);
 
-    const Vec3Array& motion() const { return motion_; }  // against which the matter's own is 1
+    const Vec3Array& motion() const { return found_.motion; }  // the matter's own of it is 1
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(motion_, last_);
+        io(found_, looks_);
     }
 
   private:
-    Vec3Array motion_, last_;  // the last step towards it
+    struct Found {
+        Vec3Array motion, last{};  // the last step towards it
+        double left = 1;
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(motion, last, left);
+        }
+    };
+
+    Found found_;
+    int looks_ = 0;
 };
 
 }  // namespace swage

@@ -12,6 +12,7 @@
 #include "tests/scene/scene_folder.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/shared/says.h"
 
 using namespace swage;
 
@@ -29,7 +30,8 @@ struct CutBar {
         bodies[0].matter = test::make_block(16, 4, 4, 0.0125, reading.scene->work_piece().material);
     }
 
-    int severed = 1;  // in the stage
+    int severed = 1;     // in the stage
+    double snapped = 0;  // in one frame [J]
 
     double modulus() const { return bodies[0].matter.material.young_modulus; }
     double stiffness() const { return modulus() * bodies[0].matter.volume(); }  // E V [J]
@@ -49,6 +51,7 @@ struct CutBar {
         const Machine machine = stage_machine(stage, bodies[0].matter, {}, Box{});
         StageTotals totals;
         totals.severed = severed;
+        totals.snapped = snapped;
         totals.residual = residual;
         FrameReport first;
         first.body.resize(last.body.size());
@@ -99,6 +102,25 @@ TEST_CASE("work that nobody did is told as soon as it is that of strains of a mi
     CHECK(is_open(bar.told(work, -0.1 * work)));
     CHECK(is_open(bar.told(1e3 * work, -1e2 * work)));
     CHECK_FALSE(is_open(bar.told(1e3 * work, -1e1 * work)));
+}
+
+TEST_CASE("what snaps through at rest is told where it takes a good part of the energy") {
+    CutBar bar("copper");
+    const double work = 1e-6 * bar.stiffness();
+    const auto tells = [&](double snapped) {
+        bar.snapped = snapped;
+        return test::says(bar.told(work, snapped), "lost at once");
+    };
+    CHECK(tells(0.06 * work));
+    CHECK_FALSE(tells(0.04 * work));
+    StageTotals totals;
+    FrameReport frame;
+    for (double remainder : {-1.0, 2.0, 2.5}) {
+        frame.remainder = remainder;
+        totals.add(int(10 * remainder), frame, 0);
+    }
+    CHECK(totals.snapped == 3);
+    CHECK(totals.snapped_in == 20);
 }
 
 TEST_CASE("a gap in the books is told however much the start has thrown off") {

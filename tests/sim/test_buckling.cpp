@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Euler's column: a straight bar that is shortened must not stay straight.
+#include <array>
 #include <cmath>
 
 #include "sim/advance.h"
@@ -175,6 +176,68 @@ TEST_CASE("what nothing bears on does not buckle") {
         to.time += 1;
         to.world_from_tool[1].translation.y() = 0.7 - depth;
         CHECK(simulation.advance(drive, to).warning.empty());
+        drive = to;
+    }
+}
+
+TEST_CASE("a leg gives way although a longer one beside it, which bears what it can, is softer") {
+    constexpr int kShort = 20, kLonger = 26, kBase = 2;
+    const Vec3i foot(9, 1, kBase), longer_foot(1, 1, kBase), count(12, 3, kBase + kLonger);
+    std::vector<Vec3i> cells;
+    for (int k = 0; k < kBase; ++k) {
+        for (int j = 0; j < count.y(); ++j) {
+            for (int i = 0; i < count.x(); ++i) cells.emplace_back(i, j, k);
+        }
+    }
+    for (int k = 0; k < kLonger; ++k) {
+        cells.emplace_back(longer_foot + k * Vec3i::UnitZ());
+        if (k < kShort) cells.emplace_back(foot + k * Vec3i::UnitZ());
+    }
+    Aggregate matter =
+        make_matter(Vec3::Zero(), kSpacing, count, cells, std::vector<float>(cells.size(), 1.0f),
+                    {.young_modulus = kModulus, .poisson_ratio = 0.3, .density = 1000});
+    // A bar that is clamped at its foot and free at its head.
+    const auto bears = [](int cells_long) {
+        const double a = kSpacing, length = cells_long * a;
+        return kPi * kPi * kModulus * a * a * a * a / 12 / (4 * length * length);
+    };
+    Apparatus apparatus;
+    apparatus.load.resize(2);
+    const std::array<Vec3i, 2> head{foot + (kShort - 1) * Vec3i::UnitZ(),
+                                    longer_foot + (kLonger - 1) * Vec3i::UnitZ()};
+    Grip base;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const auto add = [&](const Vec3& side) {
+            matter.surface.add(matter.lattice.cell_row(CellId(c)), Vec3::Constant(0.5) + 0.5 * side,
+                               kSpacing * kSpacing, side);
+            return int(matter.surface.size()) - 1;
+        };
+        if (cells[c].z() == 0) {
+            base.point.push_back(add(-Vec3::UnitZ()));
+            base.anchor.push_back(matter.surface_reference(base.point.back()));
+        }
+        if (cells[c].z() < kBase) continue;
+        for (int d : {0, 1}) {
+            for (double side : {-1.0, 1.0}) add(side * Vec3::Unit(d));
+        }
+        for (std::size_t leg = 0; leg < 2; ++leg) {
+            if (cells[c] != head[leg]) continue;
+            apparatus.load[leg].point = {add(Vec3::UnitZ())};
+            apparatus.load[leg].force = {Vec3(0, 0, -bears(leg == 0 ? kShort : kLonger))};
+        }
+    }
+    apparatus.grip.push_back(base);
+    Drive drive;
+    drive.world_from_grip.assign(1, Pose{});
+    drive.load_strength = {0, 0};
+    Simulation simulation(matter, apparatus, {});
+    bool told = false;
+    for (int frame = 1; frame <= 4; ++frame) {
+        Drive to = drive;
+        to.time += 1;
+        to.load_strength = {0.3 * frame, 0.8};
+        told = !simulation.advance(drive, to).warning.empty();
+        CHECK(told == (frame == 4));
         drive = to;
     }
 }

@@ -14,13 +14,10 @@ namespace {
 constexpr std::size_t kCount = 40, kWeakened = 17;
 
 struct Springs {
-    Vec3Array position;
     std::vector<double> mass, stiffness, left;  // the last as a share of the stiffness
 
     Springs() {
-        position.resize(kCount);
         for (std::size_t p = 0; p < kCount; ++p) {
-            position.set(p, Vec3(double(p), 0, 0));
             mass.push_back(2 + noise(p));
             stiffness.push_back(std::pow(10, 2 * noise(100 + p)));
             left.push_back(0.8 + 0.1 * noise(200 + p));
@@ -35,7 +32,7 @@ struct Springs {
             }
         };
         return mode.follow(
-            position, mass, {}, [&](const auto& w, auto& to) { of(w, to, true); },
+            mass, stiffness, {}, [&](const auto& w, auto& to) { of(w, to, true); },
             [&](const auto& w, auto& to) { of(w, to, false); },
             [&](const Vec3Array& b, Vec3Array& x) {
                 x.resize(kCount);
