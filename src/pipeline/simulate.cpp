@@ -205,13 +205,14 @@ class SimulationRun {
             take(run_stage(stage, recorder_.frame_count(), reached_.bodies, context));
         } catch (const Interrupted& interrupted) {
             // While the stage was set up.
-            if (is_in_vain()) throw;
+            if (is_in_vain()) end_in_vain();
             ended_.interrupted = interrupted;
         } catch (const std::exception& error) {
             // A stage that cannot be set up at what those before have made, or written, or that
             // wants for memory.
             ended_.stopped = failure_of(error);
-            if (is_in_vain() || !ended_.stopped) throw;
+            if (!ended_.stopped) throw;
+            if (is_in_vain()) end_in_vain();
         }
     }
 
@@ -229,6 +230,15 @@ class SimulationRun {
     // Of what was there before nothing is lost for it.
     bool is_in_vain() const {
         return recorder_.frame_count() == 0 || (!has_begun_ && context_.directory.is_changed());
+    }
+
+    // Throws what is being handled.
+    [[noreturn]] void end_in_vain() const {
+        if (context_.directory.is_changed()) {
+            log_info("{}: the run that was there stays as it was",
+                     context_.directory.root().string());
+        }
+        throw;
     }
 
     // What makes room for the run goes, once its first frame is to come.

@@ -198,9 +198,12 @@ TEST_CASE("a run that is replaced stays whole until the new one is") {
     const DoneRun done(kMesh + metal("") + kOutput, kAtRest);
     const auto before = files_below(done.out);
     const fs::path replaced = done.out / "replaced";
-    // It cannot be set up: nothing is touched.
+    // It cannot be set up: nothing is touched, which is told, and run.json tells of what is there.
     done.put({kAtRest[0], stage("bend", "radius = \"1 um\"\n")});
-    CHECK(done.go_on().code == 3);
+    const Outcome in_vain = done.go_on();
+    INFO(in_vain.err);
+    CHECK(in_vain.code == 3);
+    CHECK(says(in_vain.err, done.out.string() + ": the run that was there stays as it was"));
     CHECK(files_below(done.out) == before);
     // It ends early, in a stage and after one.
     const Stages longer = {kAtRest[0], stage("twist", "angle = \"40 deg\"\nframes = 40"),
