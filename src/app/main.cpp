@@ -103,7 +103,7 @@ int tell_failure() {
     try {
         throw;
     } catch (const Interrupted& interrupted) {
-        log_text("interrupted; complete files are kept");
+        log_text(interrupted.what());
         return 128 + interrupted.signal();
     } catch (const std::exception& error) {
         if (const std::optional<Error> failure = failure_of(error)) {

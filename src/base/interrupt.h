@@ -11,7 +11,7 @@ class Interrupted : public std::exception {
   public:
     explicit Interrupted(int signal) : signal_(signal) {}
     int signal() const { return signal_; }
-    const char* what() const noexcept override { return "interrupted"; }
+    const char* what() const noexcept override { return "interrupted; complete files are kept"; }
 
   private:
     int signal_;

@@ -174,8 +174,8 @@ class SceneRun {
         try {
             draw();
             write_record(directory_, record_, watch_);
-        } catch (const Interrupted&) {
-            log_text("interrupted; complete files are kept");
+        } catch (const Interrupted& interrupted) {
+            log_text(interrupted.what());
         } catch (const std::exception& error) {
             const std::optional<Error> failure = failure_of(error);
             if (!failure) throw;
