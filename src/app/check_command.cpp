@@ -8,6 +8,7 @@
 #include "app/lines.h"
 #include "app/scene_argument.h"
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "base/whole.h"
@@ -295,6 +296,12 @@ int check(const CheckArguments& given) {
         if (given.json) put_json(json);
         return static_cast<int>(code);
     }
+    const auto tell_why_not = [&](const std::exception& why) {
+        std::vector<Mistake> mistakes = reading.mistakes;
+        for (Mistake& late : mistakes_of(why, given.scene)) mistakes.push_back(std::move(late));
+        json["mistakes"] = mistakes_json(mistakes);
+        put_json(json);
+    };
     RunOptions options;
     options.out = ".";
     try {
@@ -316,13 +323,11 @@ int check(const CheckArguments& given) {
         if (refusal) throw Error(*refusal);
     } catch (const Error& error) {
         if (!given.json) throw;
-        std::vector<Mistake> mistakes = reading.mistakes;
-        for (Mistake& late : mistakes_of(error, given.scene)) {
-            mistakes.push_back(std::move(late));
-        }
-        json["mistakes"] = mistakes_json(mistakes);
-        put_json(json);
+        tell_why_not(error);
         return static_cast<int>(error.code());
+    } catch (const Interrupted& interrupted) {
+        if (given.json) tell_why_not(interrupted);
+        throw;
     }
     if (given.json) put_json(json);
     return 0;

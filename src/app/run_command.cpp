@@ -2,6 +2,7 @@
 #include "app/command.h"
 #include "app/scene_argument.h"
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/units.h"
 #include "pipeline/cost.h"
 #include "pipeline/run.h"
@@ -46,6 +47,15 @@ std::string text_for_record(Mistake warning) {
 int run(const RunArguments& given) {
     const SceneReading reading = read_scene_argument(given.scene);
     log_mistakes(reading.mistakes);
+    // Of a run that did not begin.
+    const auto tell_why_not = [&](const std::exception& why) {
+        std::vector<Mistake> mistakes = reading.mistakes;
+        if (reading.scene) {
+            const std::vector<Mistake> late = mistakes_of(why, given.scene);
+            mistakes.insert(mistakes.end(), late.begin(), late.end());
+        }
+        put_json({{"file", given.scene.file}, {"mistakes", mistakes_json(mistakes)}});
+    };
     Json record;
     try {
         const SceneSpec& scene = scene_of(reading, given.scene);
@@ -61,13 +71,10 @@ int run(const RunArguments& given) {
         if (given.json) put_json(interrupted.record);
         throw;
     } catch (const Error& error) {
-        if (!given.json) throw;
-        std::vector<Mistake> mistakes = reading.mistakes;
-        if (reading.scene) {
-            const std::vector<Mistake> late = mistakes_of(error, given.scene);
-            mistakes.insert(mistakes.end(), late.begin(), late.end());
-        }
-        put_json({{"file", given.scene.file}, {"mistakes", mistakes_json(mistakes)}});
+        if (given.json) tell_why_not(error);
+        throw;
+    } catch (const Interrupted& interrupted) {
+        if (given.json) tell_why_not(interrupted);
         throw;
     }
     if (given.json) put_json(record);

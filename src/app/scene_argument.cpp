@@ -82,7 +82,7 @@ Json mistakes_json(const std::vector<Mistake>& mistakes) {
     return list;
 }
 
-std::vector<Mistake> mistakes_of(const Error& error, const SceneArgument& argument) {
+std::vector<Mistake> mistakes_of(const std::exception& error, const SceneArgument& argument) {
     if (const auto* placed = dynamic_cast<const SceneError*>(&error)) return placed->mistakes();
     return {{.file = argument.file, .text = error.what()}};
 }

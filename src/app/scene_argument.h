@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,6 @@ SceneSpec scene_of(SceneReading reading, const SceneArgument& argument);
 // What --json tells of a scene that cannot be run.
 Json mistakes_json(const std::vector<Mistake>& mistakes);
 // What came to light after the scene was read; of what has no place in it, the sentence.
-std::vector<Mistake> mistakes_of(const Error& error, const SceneArgument& argument);
+std::vector<Mistake> mistakes_of(const std::exception& error, const SceneArgument& argument);
 
 }  // namespace swage

@@ -191,11 +191,10 @@ TEST_CASE("who asks a run to end by two signals at a time, as timeout does, asks
     CHECK(fs::exists(run / "motion.bin"));
 }
 
-// As a terminal does: to the process and to what it has started.
-TEST_CASE("who asks a program to end while it reads a mesh is not told that the file is damaged") {
-    const int signal = GENERATE(SIGINT, SIGTERM);
-    const Scratch scratch;
-    const fs::path mesh = scratch.path() / "long.obj";
+namespace {
+
+// One that takes some time to read.
+void put_long_mesh(const fs::path& mesh) {
     std::string text;
     for (int n = 0; n < 500'000; ++n) {
         text += "v " + std::to_string(n) + " " + std::to_string(n % 7) + " 0\n";
@@ -205,7 +204,10 @@ TEST_CASE("who asks a program to end while it reads a mesh is not told that the 
                 std::to_string(n + 2) + "\n";
     }
     put_text(mesh, text);
-    RunningSwage running({"info", mesh.string()}, scratch.path());
+}
+
+// Sends it while a mesh is read, as a terminal does: to the process and to what it has started.
+Outcome end_as_it_reads(int signal, RunningSwage& running) {
     const std::string pid = std::to_string(running.pid());
     const fs::path children = fs::path("/proc") / pid / "task" / pid / "children";
     std::string child;
@@ -215,10 +217,40 @@ TEST_CASE("who asks a program to end while it reads a mesh is not told that the 
     }
     running.signal(signal);
     if (!child.empty()) ::kill(std::stoi(child), signal);
-    const Outcome outcome = running.wait();
+    return running.wait();
+}
+
+}  // namespace
+
+TEST_CASE("who asks a program to end while it reads a mesh is not told that the file is damaged") {
+    const int signal = GENERATE(SIGINT, SIGTERM);
+    const Scratch scratch;
+    const fs::path mesh = scratch.path() / "long.obj";
+    put_long_mesh(mesh);
+    RunningSwage running({"info", mesh.string()}, scratch.path());
+    const Outcome outcome = end_as_it_reads(signal, running);
     INFO(outcome.err);
     CHECK(outcome.code == 128 + signal);
     CHECK(outcome.err.find("damaged") == std::string::npos);
+}
+
+TEST_CASE("who asks for JSON is told in it that a run was asked to end as it read its mesh") {
+    const std::string command = GENERATE("run", "check");
+    const Scratch scratch;
+    put_long_mesh(scratch.path() / "long.obj");
+    const fs::path scene = scratch.path() / "long.toml";
+    put_text(scene,
+             "[mesh]\nfile = \"long.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 2\n"
+             "[[stage]]\nmachine = \"bend\"\n");
+    RunningSwage running({command, scene.string(), "--json"}, scratch.path());
+    const Outcome outcome = end_as_it_reads(SIGTERM, running);
+    INFO(outcome.err << outcome.out);
+    CHECK(outcome.code == 128 + SIGTERM);
+    const Json told = parse_json(outcome.out);
+    CHECK(told.at("file") == scene.string());
+    REQUIRE(told.at("mistakes").size() == 1);
+    CHECK(says(told.at("mistakes").at(0).at("text"), "interrupted"));
+    CHECK_FALSE(fs::exists(scratch.path() / "renders"));
 }
 
 TEST_CASE("a second run in the same directory is refused while the first goes on") {
