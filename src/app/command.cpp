@@ -60,9 +60,17 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
     return command;
 }
 
-const CLI::Validator kSomewhere(
-    [](const std::string& text) { return text.empty() ? "\"\" is not a name" : std::string(); },
-    "");
+void ask_for_names(CLI::App& app) {
+    const CLI::Validator is_name(
+        [](const std::string& text) { return text.empty() ? "\"\" is not a name" : std::string(); },
+        "");
+    for (CLI::Option* option : app.get_options()) {
+        const std::string type = option->get_type_name();
+        const bool is_path = type == "DIR" || type == "FILE";
+        if (option->get_positional() || is_path) option->check(is_name);
+    }
+    for (CLI::App* command : app.get_subcommands({})) ask_for_names(*command);
+}
 
 void apply_common_options() {
     set_log_level(common.quiet     ? LogLevel::quiet

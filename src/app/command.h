@@ -43,8 +43,9 @@ void add_verify_command(CLI::App& app, Action& chosen);
 // After all others, whose help it tells.
 void add_help_command(CLI::App& app, Action& chosen);
 
-// Of an option that says where to write: anything but "", which nobody means.
-extern const CLI::Validator kSomewhere;
+// Of all commands, once they are added: what is named, of a file or of anything else, has a name;
+// nobody means "".
+void ask_for_names(CLI::App& app);
 
 // Data for stdout; a reader that has gone away is no error, a full disk is.
 void put_out(std::string_view text);

@@ -88,7 +88,6 @@ void add_export_command(CLI::App& app, Action& chosen) {
             "USD text file to write (default: RUN/usd/SCENE.usda), in metres: every body with its "
             "materials and its place in every frame, tools under machine/STAGE, the stills' camera "
             "and key_lamp. Images go beside it. An earlier export of that name is replaced")
-        ->check(kSomewhere)
         ->type_name("FILE");
     add_frame_arguments(*command, given.frames);
     add_view_arguments(*command, given.view);

@@ -64,6 +64,7 @@ int run_command_line(int argc, char** argv) {
     add_make_command(app, chosen);
     add_verify_command(app, chosen);
     add_help_command(app, chosen);
+    ask_for_names(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -107,7 +107,6 @@ void add_make_command(CLI::App& app, Action& chosen) {
                                                   info.name),
                                       chosen, [&info] { return make(info, given); });
         shape->add_option("-o,--out", given.out, "OBJ or PLY file to write (default: SHAPE.obj)")
-            ->check(kSomewhere)
             ->type_name("FILE");
         for (const ShapeParameter& parameter : info.parameters) {
             shape

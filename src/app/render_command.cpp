@@ -114,7 +114,6 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->add_option("--out", given.out,
                      "folder to draw into (default: RUN/again): a new or empty one, or one that "
                      "was drawn into before, whose earlier pictures are removed")
-        ->check(kSomewhere)
         ->type_name("DIR");
     add_view_arguments(*command, given.view);
     command

@@ -94,7 +94,6 @@ void add_run_command(CLI::App& app, Action& chosen) {
         chosen, [] { return run(given); });
     add_scene_argument(*command, given.scene);
     command->add_option("--out", given.out, "run directory (default: renders/NAME-OF-SCENE)")
-        ->check(kSomewhere)
         ->type_name("DIR");
     command
         ->add_option("--frames", given.frames,

@@ -29,7 +29,6 @@ void refuse_run(const std::filesystem::path& file) {
 
 void add_assets_option(CLI::App& command, std::string& assets) {
     command.add_option("--assets", assets, "folder that contains machines/ and assets/")
-        ->check(kSomewhere)
         ->type_name("DIR");
 }
 

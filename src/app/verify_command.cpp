@@ -120,7 +120,6 @@ void add_verify_command(CLI::App& app, Action& chosen) {
     command->add_option("cases", given.cases, "cases to run (default: all): " + names)
         ->type_name("CASE");
     command->add_option("--out", given.out, "write verify.json and verify.html there")
-        ->check(kSomewhere)
         ->type_name("DIR");
     CLI::Option* json = command->add_flag("--json", given.json, "print JSON");
     command->add_flag("--markdown", given.markdown, "print the README's table")->excludes(json);

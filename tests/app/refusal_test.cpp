@@ -115,3 +115,22 @@ TEST_CASE(
     CHECK_FALSE(fs::exists(scratch.path() / "renders"));
     CHECK_FALSE(fs::exists(scratch.path() / "run" / "again"));
 }
+
+TEST_CASE("whatever is to be named has a name") {
+    for (const auto& [command, what] : {std::pair{"run", "scene"},
+                                        {"check", "scene"},
+                                        {"info", "mesh"},
+                                        {"machines", "name"},
+                                        {"materials", "name"},
+                                        {"keys", "word"},
+                                        {"render", "run"},
+                                        {"export", "run"},
+                                        {"verify", "cases"},
+                                        {"help", "command"}}) {
+        const Outcome outcome = run_swage({command, ""});
+        INFO(command << ": " << outcome.err);
+        CHECK(outcome.code == 2);
+        CHECK(outcome.out.empty());
+        CHECK(says(outcome.err, std::string(what) + ": \"\" is not a name"));
+    }
+}
