@@ -21,14 +21,14 @@ constexpr double kLeastSpread = 0.02;
 constexpr double kOfSprings = 0.25;  // Poisson's ratio
 
 // Stress, plastic strain, and where it yields.
-constexpr int kParts = 8;
+constexpr int kParts = 8, kYieldsAt = 7;
 using Parts = Eigen::Matrix<double, kParts, 1>;
 
 Parts parts_of(const StressSample& s) {
     Parts p;
     for (int i = 0; i < 6; ++i) p[i] = s.stress[static_cast<std::size_t>(i)];
     p[6] = s.plastic_strain;
-    p[7] = std::isfinite(s.yields_at) ? s.yields_at : 0;
+    p[kYieldsAt] = std::isfinite(s.yields_at) ? s.yields_at : 0;
     return p;
 }
 
@@ -36,6 +36,15 @@ Parts parts_of(const StressSample& s) {
 struct Line {
     Parts at;
     Eigen::Matrix<double, kParts, 3> slope;  // by the place in cells
+    double least_yields_at;                  // of the cells that it is drawn through
+
+    // `way`: from the centroid. What matter bears before it flows divides its stress, and a line
+    // through a jump of that goes below 0 beside it.
+    Parts after(const Vec3& way) const {
+        Parts parts = at + slope * way;
+        parts[kYieldsAt] = std::max(parts[kYieldsAt], least_yields_at);
+        return parts;
+    }
 };
 
 // What a particle is told of one material.
@@ -128,7 +137,8 @@ class Fitter {
 
     Line drawn(std::size_t own) const {
         const StressSample& s = sample_[own];
-        Line line{parts_of(s), Eigen::Matrix<double, kParts, 3>::Zero()};
+        const Parts parts = parts_of(s);
+        Line line{parts, Eigen::Matrix<double, kParts, 3>::Zero(), parts[kYieldsAt]};
         if (!s.sound) return line;
         double volume = 0;
         Vec3 place = Vec3::Zero();
@@ -145,9 +155,11 @@ class Fitter {
             });
         };
         each([&](const StressSample& other) {
+            const Parts theirs = parts_of(other);
             volume += other.volume;
             place += other.volume * other.place;
-            mean += other.volume * parts_of(other);
+            mean += other.volume * theirs;
+            line.least_yields_at = std::min(line.least_yields_at, theirs[kYieldsAt]);
         });
         if (!(volume > 0)) return line;
         place /= volume;
@@ -180,8 +192,7 @@ class Fitter {
             for (int c = 0; c < 8; ++c) {
                 if (!(s.corners >> c & 1) || slot[corner[c]] < 0 || !(s.volume > 0)) continue;
                 const Vec3 place = (site_[n] + corner_step(c)).cast<double>();
-                tell(told_[slot[corner[c]]], s,
-                     s.volume * (line_[n].at + line_[n].slope * (place - s.place)));
+                tell(told_[slot[corner[c]]], s, s.volume * line_[n].after(place - s.place));
             }
         }
     }
@@ -217,7 +228,7 @@ class Numbers {
         for (int i = 0; i < 6; ++i) squares += (i < 3 ? 1 : 2) * s[i] * s[i];
         equivalent_ = std::sqrt(1.5 * squares);
         mean_ = mean;
-        const double most = parts[7];
+        const double most = parts[kYieldsAt];
         if (most > 0 && equivalent_ > most) {
             share_ = most / equivalent_;
             equivalent_ = most;
@@ -226,7 +237,7 @@ class Numbers {
     double of(SkinField field) const {
         switch (field) {
             case SkinField::yield_use:
-                return parts_[7] > 0 ? equivalent_ / parts_[7] : 0;
+                return parts_[kYieldsAt] > 0 ? equivalent_ / parts_[kYieldsAt] : 0;
             case SkinField::strength_use:
                 return strength_use();
             case SkinField::plastic_strain:

@@ -15,7 +15,8 @@
 // cell that a blade or a crack has crossed is of each of its parts alone, and tells of them only
 // where no sound cell is at hand. Nor do materials: a vertex tells of the one that it lies in, as
 // the boundary in its cell has it. Where a material yields, the stress that a line reaches goes no
-// further than to its yield stress, and no plastic strain is below 0. Where a vertex's cell has
+// further than to its yield stress, that one nowhere below the least of the cells that its line is
+// drawn through, and no plastic strain is below 0. Where a vertex's cell has
 // broken its use of strength is 1.
 //
 // Sources: extrapolation from where elements are right, E. Hinton, J. Campbell, Int. J. Numer.

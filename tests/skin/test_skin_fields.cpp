@@ -168,6 +168,25 @@ TEST_CASE("no line goes beyond what a material yields at, nor to less flow than 
     CHECK(is[1][2] == Approx(0.5));
 }
 
+TEST_CASE("beside matter that flows at far more, use is told by no less than cells flow at") {
+    // Its outermost layer bears half of what it flows at, and those below flow at far more.
+    const Aggregate matter = make_block(6, 4, 4, 0.01, Material{});
+    std::vector<Vec3> places;
+    for (int n = -4; n <= 4; ++n) places.emplace_back(0.005 * n, 0.02, 0.003 * n);
+    const Mount mount = mount_mesh(places, matter, SkinKind::mount);
+    const double times = GENERATE(1.0, 3.0, 15.0, 100.0);
+    INFO(times);
+    std::vector<StressSample> samples =
+        pulled(matter, cells_under(mount, matter), [](const Vec3&) { return 1.0; });
+    for (StressSample& one : samples) one.yields_at = one.place.y() > 3 ? 2 : 2 * times;
+    const std::vector<std::vector<float>> is =
+        skin_fields(mount, matter, samples, {SkinField::yield_use, SkinField::stress});
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        CHECK(is[0][v] == Approx(0.5));
+        CHECK(is[1][v] == Approx(1));
+    }
+}
+
 TEST_CASE("slivers of cells say hardly anything of the stress at the surface") {
     Aggregate matter = make_block(5, 4, 4, 0.01, Material{});
     for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
