@@ -246,7 +246,7 @@ BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look, double 
     const SurfaceSamples samples(matter);
     VoxelSurface surface = voxel_surface(matter, samples);
     const Pieces pieces = find_pieces(matter);
-    const std::vector<Vec3> place =
+    const PointPlaces at =
         place_points(matter, pieces, samples, Warp(matter.lattice, roughness), surface);
 
     BoundarySkin skin;
@@ -262,15 +262,14 @@ BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look, double 
         };
         for (int k = 0; k < 4; ++k) own(face.vertex[k]), own(face.middle[k]);
     }
-    mount.reference = place_vertices(matter, surface, owner, place);
+    mount.reference = place_vertices(matter, surface, owner, at.place);
     std::vector<Facet> facet;
     for (const VoxelFace& face : surface.face)
         facet.push_back({face.vertex, face.middle, face.diagonal});
     std::vector<char> fixed(surface.vertex_count);
     for (int v = 0; v < surface.vertex_count; ++v) fixed[v] = owner[v].at_cut;
-    for (const auto& rest :
-         {rest_places(matter, samples, surface), lattice_places(matter, surface)}) {
-        part_crossings(facet, place_vertices(matter, surface, owner, rest), fixed,
+    for (const std::vector<Vec3>* rest : {&at.rest, &at.lattice}) {
+        part_crossings(facet, place_vertices(matter, surface, owner, *rest), fixed,
                        matter.lattice.spacing, mount.reference);
     }
     for (int v = 0; v < surface.vertex_count; ++v) {

@@ -36,6 +36,48 @@ bool any_broke(const Aggregate& matter, const VoxelSurface& surface) {
                                [&](const VoxelFace& face) { return broke_by_load(matter, face); });
 }
 
+std::vector<Vec3> lattice_places(const Aggregate& matter, const VoxelSurface& surface) {
+    std::vector<Vec3> place;
+    place.reserve(surface.site.size());
+    const CellBox box = cell_box(matter, 0);
+    const Vec3 low = box.low - box.size.cwiseProduct(matter.lattice.cell_site(0).cast<double>());
+    for (const HalfSite& at : surface.site) {
+        place.push_back(low + 0.5 * box.size.cwiseProduct(Vec3(at[0], at[1], at[2])));
+    }
+    return place;
+}
+
+// NOTE: all keep their order of heights, so that next to nothing comes to lie on the other side of
+// anything.
+std::vector<Vec3> rest_places(const Aggregate& matter, const SurfaceSamples& samples,
+                              const VoxelSurface& surface) {
+    constexpr double kLeft = 0.1;
+    std::vector<Vec3> place = lattice_places(matter, surface);
+    if (samples.empty() || !any_broke(matter, surface)) return place;
+    std::vector<char> far(place.size(), 0);
+    parallel_each(place.size(), kChunk, [&](std::size_t s) {
+        const double height = samples.height(place[s]);
+        far[s] = height == SurfaceSamples::kNone;
+        if (height > 0) samples.lower(kLeft * height, place[s]);
+    });
+    // A corner out of reach of the surface goes in between those beside it.
+    std::vector<Vec3> sum(place.size(), Vec3::Zero());
+    std::vector<int> count(place.size(), 0);
+    for (const VoxelFace& face : surface.face) {
+        for (int k = 0; k < 4 && !face.cut; ++k) {
+            const int p = face.point[k];
+            if (!far[p]) continue;
+            for (int q : {face.point[(k + 1) % 4], face.point[(k + 3) % 4]}) {
+                if (!far[q]) sum[p] += place[q], ++count[p];
+            }
+        }
+    }
+    for (std::size_t s = 0; s < place.size(); ++s) {
+        if (count[s] > 0) place[s] = sum[s] / count[s];
+    }
+    return place;
+}
+
 class Placer {
   public:
     Placer(const Aggregate& matter, const SurfaceSamples& samples, const VoxelSurface& surface,
@@ -49,7 +91,7 @@ class Placer {
           rest_(rest_places(matter, samples, surface)) {}
 
     // `surface`: the same.
-    std::vector<Vec3> run(const Pieces& pieces, VoxelSurface& surface) {
+    PointPlaces run(const Pieces& pieces, VoxelSurface& surface) {
         place_ = start_;
         find_kinds();
         target_ = cut_targets(matter_, surface_, place_);
@@ -69,7 +111,7 @@ class Placer {
             make_up_volume();
             if (any_broke(matter_, surface_)) part_all();
         }
-        return std::move(place_);
+        return {std::move(place_), std::move(start_), std::move(rest_)};
     }
 
   private:
@@ -362,7 +404,7 @@ class Placer {
     const double a_;
     const bool any_dropped_ = std::any_of(surface_.kept.begin(), surface_.kept.end(),
                                           [](CornerMask kept) { return kept != kAllCorners; });
-    const std::vector<Vec3> start_, rest_;
+    std::vector<Vec3> start_, rest_;
     std::vector<Vec3> place_, normal_;
     std::vector<Vec3> facing_;  // normals before it meets the true surface: tell edges from sides
     std::vector<char> outer_, on_cut_, blade_, exact_, fixed_axis_, slides_;
@@ -372,51 +414,8 @@ class Placer {
 
 }  // namespace
 
-std::vector<Vec3> lattice_places(const Aggregate& matter, const VoxelSurface& surface) {
-    std::vector<Vec3> place;
-    place.reserve(surface.site.size());
-    const CellBox box = cell_box(matter, 0);
-    const Vec3 low = box.low - box.size.cwiseProduct(matter.lattice.cell_site(0).cast<double>());
-    for (const HalfSite& at : surface.site) {
-        place.push_back(low + 0.5 * box.size.cwiseProduct(Vec3(at[0], at[1], at[2])));
-    }
-    return place;
-}
-
-// NOTE: all keep their order of heights, so that next to nothing comes to lie on the other side of
-// anything.
-std::vector<Vec3> rest_places(const Aggregate& matter, const SurfaceSamples& samples,
-                              const VoxelSurface& surface) {
-    constexpr double kLeft = 0.1;
-    std::vector<Vec3> place = lattice_places(matter, surface);
-    if (samples.empty() || !any_broke(matter, surface)) return place;
-    std::vector<char> far(place.size(), 0);
-    parallel_each(place.size(), kChunk, [&](std::size_t s) {
-        const double height = samples.height(place[s]);
-        far[s] = height == SurfaceSamples::kNone;
-        if (height > 0) samples.lower(kLeft * height, place[s]);
-    });
-    // A corner out of reach of the surface goes in between those beside it.
-    std::vector<Vec3> sum(place.size(), Vec3::Zero());
-    std::vector<int> count(place.size(), 0);
-    for (const VoxelFace& face : surface.face) {
-        for (int k = 0; k < 4 && !face.cut; ++k) {
-            const int p = face.point[k];
-            if (!far[p]) continue;
-            for (int q : {face.point[(k + 1) % 4], face.point[(k + 3) % 4]}) {
-                if (!far[q]) sum[p] += place[q], ++count[p];
-            }
-        }
-    }
-    for (std::size_t s = 0; s < place.size(); ++s) {
-        if (count[s] > 0) place[s] = sum[s] / count[s];
-    }
-    return place;
-}
-
-std::vector<Vec3> place_points(const Aggregate& matter, const Pieces& pieces,
-                               const SurfaceSamples& samples, const Warp& warp,
-                               VoxelSurface& surface) {
+PointPlaces place_points(const Aggregate& matter, const Pieces& pieces,
+                         const SurfaceSamples& samples, const Warp& warp, VoxelSurface& surface) {
     if (surface.face.empty()) return {};
     return Placer(matter, samples, surface, warp).run(pieces, surface);
 }

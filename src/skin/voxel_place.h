@@ -10,20 +10,21 @@
 
 namespace swage {
 
-// One place [m] for each site: on the body's true surface where that is known; on smooth cut faces
-// half-way between the particles that were severed; where they broke by load, off that by the warp.
-// The enclosed volume is the matter's.
+// Of each site [m].
+struct PointPlaces {
+    // On the body's true surface where that is known; on smooth cut faces half-way between the
+    // particles that were severed; where they broke by load, off that by the warp. The enclosed
+    // volume is the matter's.
+    std::vector<Vec3> place;
+    // Where the voxels have them.
+    std::vector<Vec3> lattice;
+    // The same, but where anything broke for those outside of the true surface, which are drawn in
+    // to a tenth of their height above it: points that cannot be where they belong rest there.
+    std::vector<Vec3> rest;
+};
+
 // Crumbs (skin/voxel_crumbs.h) are dropped.
-std::vector<Vec3> place_points(const Aggregate& matter, const Pieces& pieces,
-                               const SurfaceSamples& samples, const Warp& warp,
-                               VoxelSurface& surface);
-
-// Where the voxels have the sites [m].
-std::vector<Vec3> lattice_places(const Aggregate& matter, const VoxelSurface& surface);
-
-// The same, but where anything broke for those outside of the true surface, which are drawn in to a
-// tenth of their height above it: points that cannot be where they belong rest there.
-std::vector<Vec3> rest_places(const Aggregate& matter, const SurfaceSamples& samples,
-                              const VoxelSurface& surface);
+PointPlaces place_points(const Aggregate& matter, const Pieces& pieces,
+                         const SurfaceSamples& samples, const Warp& warp, VoxelSurface& surface);
 
 }  // namespace swage
