@@ -4,12 +4,12 @@
 #include "mold/mold.h"
 
 #include "base/error.h"
-#include "base/text.h"
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_check.h"
 #include "matter/material_volumes.h"
 #include "mold/caps.h"
 #include "mold/filled_gaps.h"
+#include "mold/gap_text.h"
 #include "mold/insets.h"
 #include "mold/moments.h"
 #include "mold/prepare.h"
@@ -24,18 +24,6 @@ namespace {
 constexpr double kThinnest = 0.02;  // mean thickness, in cells
 constexpr double kThin = 0.25;
 constexpr double kOffCentre = 1e-3;  // [cells]
-
-// Of what is only about so long.
-std::string about(double length, int digits) {
-    return length_text(std::stod(fmt::format("{:.{}g}", length, digits)));
-}
-
-// The largest length of two digits that is no more than this, for what is advised must do: its
-// digits after the second are left out. Of no more of them, for 0.1 is not quite a tenth.
-std::string at_most(double length) {
-    const std::string all = fmt::format("{:.9e}", length);
-    return length_text(std::stod(all.substr(0, all.find('.') + 2) + all.substr(all.find('e'))));
-}
 
 // The box, grown to whole cells about its centre (S2.16).
 TriMesh block_around(const TriMesh& mesh, double spacing) {
@@ -124,31 +112,6 @@ double filled_cells(const std::vector<CellLayer>& layers) {
     for (const CellLayer& layer : layers)
         for (const CellFill& s : layer.share) sum += s.fill;
     return sum;
-}
-
-std::string gap_text(const std::vector<FilledGap>& gaps, double spacing) {
-    const FilledGap& largest = gaps[0];
-    const auto at = [&](int axis) {
-        const double place = largest.place[axis];
-        return length_text(std::abs(place) > 1e-6 * spacing ? place : 0);
-    };
-    const std::string what =
-        largest.width > 0
-            ? fmt::format(
-                  "a gap in the mesh of about {} is too narrow for cells of {}, which hold "
-                  "its sides",
-                  about(largest.width, 2), length_text(spacing))
-            : fmt::format("the sides of a gap in the mesh touch, and cells of {} hold them",
-                          length_text(spacing));
-    return fmt::format(
-        "{} together over {} about [{}, {}, {}] of the mesh{}{}", what, area_text(largest.area),
-        at(0), at(1), at(2),
-        gaps.size() > 1 ? fmt::format(", as they do at {}",
-                                      counted(gaps.size() - 1, "other place", "other places"))
-                        : "",
-        largest.spacing > 0
-            ? fmt::format("; spacing = \"{}\" keeps it open", at_most(largest.spacing))
-            : "");
 }
 
 // Everything about the result that a user would not expect.

@@ -13,4 +13,8 @@ Box surface_box(const TriMesh& mesh);
 // Throws FinenessError(resources) naming cells, bytes and limit.
 void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings);
 
+// What a mold tells of gaps that its cells fill, without the lattice; empty: nothing. Takes 0.3 s
+// and 60 MB a million cells.
+std::string filled_gap_text(const TriMesh& mesh, const MoldSettings& settings);
+
 }  // namespace swage

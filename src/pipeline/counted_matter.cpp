@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/portable_math.h"
+#include "mold/prepare.h"
 #include "pipeline/folded_bodies.h"
 #include "pipeline/probes.h"
 #include "sim/advance.h"
@@ -84,7 +85,11 @@ CountedMatter make_matter(const SceneSpec& scene, const std::vector<InputMesh>& 
         }
         std::vector<std::string> findings;
         made.matter.push_back(mold_body(input[b], body, findings, &made.inset[b]));
-        if (coarser[b] > 1) findings.clear();
+        if (coarser[b] > 1) {
+            findings.clear();
+            const std::string gap = filled_gap_text(input[b].to_mold(), scene.body[b].mold);
+            if (!gap.empty()) findings.push_back(gap);
+        }
         found.push_back(std::move(findings));
         mount_probes(body, input[b].to_mold(), made.matter[b]);  // refuses those beside it
         place_at_start(body.start, input[b].to_mold(), made.matter[b]);

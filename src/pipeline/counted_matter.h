@@ -35,7 +35,7 @@ std::vector<double> coarser_by(const std::vector<MoldEstimate>& estimate,
                                const std::vector<double>& across, double most);
 
 // Throws as mold_body() and mount_probes(). `warning`: what is found as it is made, if that is at
-// the spacing that is asked for.
+// the spacing that is asked for; else of gaps alone, at that spacing.
 CountedMatter make_matter(const SceneSpec& scene, const std::vector<InputMesh>& input,
                           const std::vector<MoldEstimate>& estimate,
                           const std::vector<double>& coarser, std::vector<std::string>& warning);

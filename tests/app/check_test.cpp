@@ -395,3 +395,41 @@ TEST_CASE("of what is elastic and does not rest check tells the steps of motion 
         "machine = \"floor\"\ngravity = 9.81\nduration = \"110 ms\"\nframes = 7\n"
         "drop = \"5 cm\"\n");
 }
+
+TEST_CASE("check tells of a gap that cells fill, however many they are") {
+    const Scratch scratch;
+    // Two prongs along x, 0.4 mm apart.
+    std::string mesh;
+    const double low = 0.010, high = 0.0104, top = 0.0204, root = 0.010, end = 0.040;
+    const double corner[8][2] = {{0, 0},       {end, 0},    {end, low}, {root, low},
+                                 {root, high}, {end, high}, {end, top}, {0, top}};
+    for (const double z : {0.0, 0.010}) {
+        for (const auto& [x, y] : corner) mesh += fmt::format("v {} {} {}\n", x, y, z);
+    }
+    const int half[6][3] = {{1, 2, 4}, {2, 3, 4}, {1, 4, 5}, {1, 5, 8}, {5, 6, 7}, {5, 7, 8}};
+    for (const auto& [a, b, c] : half) {
+        mesh += fmt::format("f {} {} {}\nf {} {} {}\n", a, c, b, a + 8, b + 8, c + 8);
+    }
+    for (int n = 1; n <= 8; ++n) {
+        mesh += fmt::format("f {0} {1} {3} {2}\n", n, n % 8 + 1, n + 8, n % 8 + 9);
+    }
+    put_text(scratch.path() / "fork.obj", mesh);
+    const fs::path scene = scratch.path() / "fork.toml";
+    put_text(scene,
+             "[mesh]\nfile = \"fork.obj\"\n[material]\nname = \"rubber\"\n"
+             "[mold]\nspacing = \"0.285 mm\"\n[[stage]]\nmachine = \"hold\"\n");
+    const auto check = [&](const std::string& spacing) {
+        return run_swage({"check", scene.string(), "--set", "mold.spacing=" + spacing});
+    };
+    for (const char* spacing : {"0.5 mm", "0.285 mm"}) {
+        const Outcome outcome = check(spacing);
+        INFO(outcome.err << outcome.out);
+        CHECK(outcome.code == 0);
+        CHECK(says(outcome.out, "cells        about ") == (spacing == std::string("0.285 mm")));
+        CHECK(says(outcome.err, fmt::format("a gap in the mesh of about 400 um is too narrow for "
+                                            "cells of {}",
+                                            spacing[2] == '5' ? "500 um" : "285 um")));
+        CHECK(says(outcome.err, "spacing = \"200 um\" keeps it open"));
+    }
+    CHECK_FALSE(says(check("200 um").err, "gap"));
+}

@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "geometry/box_mesh.h"
 #include "mold/mold.h"
+#include "mold/prepare.h"
 #include "tests/catch.h"
 #include "tests/shared/meshes.h"
 
@@ -148,6 +149,22 @@ TEST_CASE("the spacing that is said to keep a gap open does") {
         CHECK(told_of(fork_mesh(gap), spacing) == "");
     }
     CHECK(told > 20);
+}
+
+TEST_CASE("without its lattice a mold tells the same of gaps") {
+    TriMesh open = fork_mesh(1.2);
+    open.triangle.pop_back();
+    for (const TriMesh& mesh :
+         {fork_mesh(0.3), fork_mesh(1.2), fork_mesh(2.4), notch_mesh(3, 12), open}) {
+        for (const double spacing : {1.0, 0.7}) {
+            MoldSettings settings;
+            settings.spacing = spacing;
+            CHECK(filled_gap_text(mesh, settings) == told_of(mesh, spacing));
+            settings.kind = MoldKind::block;
+            CHECK(filled_gap_text(mesh, settings) == "");
+        }
+    }
+    CHECK(told_of(open) != "");
 }
 
 TEST_CASE("a gap is told of however it lies to the cells, and no wide one is") {
