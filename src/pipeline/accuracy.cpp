@@ -49,26 +49,34 @@ Resolved resolved_strength(const Material& material, double spacing, double cell
 }
 
 std::string strength_warning(const Material& material, double spacing, double cells,
-                             const std::string& section, double most_across) {
+                             const std::string& section, const Advisable& most) {
     const Resolved resolved = resolved_strength(material, spacing, cells);
     if (resolved.whole()) return "";
-    std::string finer = "no cell size is fine enough; at this one it takes";
-    if (resolved.cells_for_whole <= most_across && resolved.cells_for_whole < kMostAcross) {
-        finer = fmt::format("{} across = {} would suffice, or at this one", section,
-                            resolved.cells_for_whole);
-    } else if (resolved.cells_for_whole < kMostAcross) {
-        finer = fmt::format(
-            "no lattice within its cell_limit is fine enough ({} across = {} would be); at this "
-            "one it takes",
-            section, resolved.cells_for_whole);
+    const std::string name = material.name == Material{}.name ? "the material" : material.name;
+    const double toughness = told(toughness_for(material, spacing), std::ceil);
+    const bool is_strange = toughness >= most.toughness;
+    const std::string tougher =
+        is_strange ? "" : "a toughness of " + quantity_text(toughness, Quantity::toughness);
+    std::string advice;
+    if (resolved.cells_for_whole <= most.across && resolved.cells_for_whole < kMostAcross) {
+        advice = fmt::format("{} across = {} would suffice{}", section, resolved.cells_for_whole,
+                             is_strange ? "" : ", or at this one " + tougher);
+    } else {
+        advice = resolved.cells_for_whole < kMostAcross
+                     ? fmt::format(
+                           "no lattice within its cell_limit is fine enough ({} across = {} "
+                           "would be)",
+                           section, resolved.cells_for_whole)
+                     : "no cell size is fine enough";
+        advice += is_strange
+                      ? fmt::format("; at this one it takes more toughness than any {} has", name)
+                      : "; at this one it takes " + tougher;
     }
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
-        "breaks at {} instead of {}; {} a toughness of {}",
-        length_text(spacing), material.name == Material{}.name ? "the material" : material.name,
-        quantity_text(told(resolved.strength), Quantity::stress),
-        quantity_text(material.strength, Quantity::stress), finer,
-        quantity_text(told(toughness_for(material, spacing), std::ceil), Quantity::toughness));
+        "breaks at {} instead of {}; {}",
+        length_text(spacing), name, quantity_text(told(resolved.strength), Quantity::stress),
+        quantity_text(material.strength, Quantity::stress), advice);
 }
 
 }  // namespace swage

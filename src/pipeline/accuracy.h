@@ -2,6 +2,7 @@
 // What a resolution is worth, from what `swage verify` measures.
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "matter/material.h"
@@ -27,10 +28,15 @@ struct Resolved {
 Resolved resolved_strength(const Material& material, double spacing, double cells);
 inline constexpr double kMostAcross = 1e9;  // cells in all of a mold
 
-// Empty where it is resolved, or nothing breaks. `section`: of the scene, that says how fine;
-// `most_across`: the most cells over the thinnest side that the mold may have.
+// What may be told to resolve it.
+struct Advisable {
+    double across = kMostAcross;  // most cells over the thinnest side that the mold may have
+    // [J/m2]; as much is strange of the material.
+    double toughness = std::numeric_limits<double>::infinity();
+};
+
+// Empty where it is resolved, or nothing breaks. `section`: of the scene, that says how fine.
 std::string strength_warning(const Material& material, double spacing, double cells,
-                             const std::string& section = "[mold]",
-                             double most_across = kMostAcross);
+                             const std::string& section = "[mold]", const Advisable& most = {});
 
 }  // namespace swage

@@ -249,8 +249,11 @@ void add_warnings(const SceneSpec& scene, const std::vector<InputMesh>& input, R
     for (std::size_t b = 0; b < scene.body.size(); ++b) {
         const BodyCost& body = cost.body[b];
         for (const Material* material : scene.body[b].materials()) {
+            Advisable most{.across = body.most_across};
+            const auto known = scene.strange_toughness.find(material->name);
+            if (known != scene.strange_toughness.end()) most.toughness = known->second;
             const std::string one =
-                strength_warning(*material, body.spacing, body.across, section, body.most_across);
+                strength_warning(*material, body.spacing, body.across, section, most);
             if (!one.empty()) strength[b].push_back(one);
         }
     }

@@ -21,7 +21,6 @@ constexpr double kMuchFriction = 2;
 constexpr double kRubberPoisson = 0.4;
 constexpr double kMostStrength = 0.1;                   // of young_modulus
 constexpr double kLeastYield = 1e-6, kMostYield = 0.2;  // likewise, of what there is
-constexpr double kOtherMatter = 600;                    // times more or less: a unit is missing
 // Beyond all matter, and far from where numbers end.
 constexpr Range kStiffness = {.low = 1e-3, .high = 1e15};  // [Pa]
 constexpr Range kDensity = {.low = 1e-3, .high = 1e9};     // [kg/m3]

@@ -7,6 +7,9 @@
 
 namespace swage {
 
+// Times more or less than what a known material has: a unit is missing.
+inline constexpr double kOtherMatter = 600;
+
 // Reads the numbers of a material over those that `material` has; `needs_all` asks for those that
 // nothing can stand in for.
 void read_material_numbers(TableReader& table, bool needs_all, Material& material);

@@ -220,6 +220,11 @@ SceneReading read_scene(const fs::path& file, const std::vector<std::string>& ov
         reading.is_complete = document->is_complete;
         read_scene_document(*document, assets, reading, scene);
         numbers = std::move(reading.number);
+        if (reading.materials) {
+            for (const Material& known : reading.materials->material) {
+                scene.strange_toughness[known.name] = kOtherMatter * known.toughness;
+            }
+        }
     }
     if (mistakes.is_clean()) {
         warn_of_idle_keys(document->root, scene, mistakes);

@@ -142,6 +142,8 @@ struct SceneSpec {
     RenderSettings render;
     OutputSpec output;
     std::vector<Said> said;  // all that it says, with what was set on the command line
+    // Of known materials by their names [J/m2]: who gives them as much is asked about the unit.
+    std::map<std::string, double> strange_toughness;
     // Every file that was read but for the meshes of bodies: the scene, materials, machines, the
     // meshes of tools and insets.
     std::vector<std::filesystem::path> inputs;

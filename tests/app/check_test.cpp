@@ -396,6 +396,37 @@ TEST_CASE("of what is elastic and does not rest check tells the steps of motion 
         "drop = \"5 cm\"\n");
 }
 
+TEST_CASE("a toughness that check advises is none that it then asks about") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "brittle.toml";
+    const std::string material = GENERATE("glass", "ice", "concrete");
+    const double length = GENERATE(0.02, 0.2, 2.0, 20.0);
+    INFO(material << ", " << length);
+    swage::write_obj(scratch.path() / "bar.obj",
+                     swage::box_mesh({0, 0, 0}, {length, 0.2 * length, 0.2 * length}));
+    put_text(scene, "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"" + material +
+                        "\"\n[mold]\nacross = 4\n[[stage]]\nmachine = \"bend\"\n");
+    const auto check = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words = {"check", scene.string()};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_swage(words);
+    };
+    const std::string told = check({}).out, advised = "a toughness of ";
+    INFO(told);
+    const std::size_t at = told.find(advised);
+    if (at == std::string::npos) {
+        CHECK(says(told, "do not resolve") ==
+              says(told, "it takes more toughness than any " + material + " has"));
+        return;
+    }
+    const std::size_t begin = at + advised.size(), end = told.find('\n', begin);
+    const Outcome taken = check({"--set", "material.toughness=" + told.substr(begin, end - begin)});
+    INFO(taken.err << taken.out);
+    CHECK(taken.code == 0);
+    CHECK_FALSE(says(taken.err, "unit"));
+    CHECK_FALSE(says(taken.out, "do not resolve"));
+}
+
 TEST_CASE("check tells of a gap that cells fill, however many they are") {
     const Scratch scratch;
     // Two prongs along x, 0.4 mm apart.

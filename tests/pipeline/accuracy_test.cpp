@@ -60,7 +60,7 @@ TEST_CASE("cells that a mold may not have are not told to be enough") {
     glass.young_modulus = 70e9, glass.strength = 45e6, glass.toughness = 8;
     const int enough = resolved_strength(glass, 2e-3, 10).cells_for_whole;
     const auto told = [&](double most) {
-        return strength_warning(glass, 2e-3, 10, "[mold]", most);
+        return strength_warning(glass, 2e-3, 10, "[mold]", {.across = most});
     };
     const std::string advice = fmt::format("[mold] across = {} would suffice", enough);
     CHECK(told(enough).find(advice) != std::string::npos);
