@@ -15,6 +15,7 @@
 #include "pipeline/accuracy.h"
 #include "pipeline/body_look.h"
 #include "pipeline/cost.h"
+#include "pipeline/draw.h"
 #include "pipeline/folded_bodies.h"
 #include "pipeline/run_record.h"
 
@@ -23,6 +24,7 @@ namespace swage {
 namespace {
 
 constexpr double kMuchMore = 1.2;    // memory
+constexpr int kAnyDraws = 4096;      // pixels of a side, whatever draws
 constexpr double kLeastCells = 1.5;  // of a part whose stiffness the measured table tells
 
 struct CheckArguments {
@@ -255,9 +257,12 @@ Json stages_json(const SceneSpec& scene, const RunCost& cost) {
     return stages;
 }
 
-std::optional<Error> refusal_of(const RunCost& cost, const RunOptions& options) {
+std::optional<Error> refusal_of(const SceneSpec& scene, const RunCost& cost,
+                                const RunOptions& options) {
     try {
         refuse_excess(cost, options);
+        const RenderSettings& render = scene.render;
+        if (std::max(render.width, render.height) > kAnyDraws) check_drawing(render);
     } catch (const Error& error) {
         return error;
     }
@@ -307,7 +312,7 @@ int check(const CheckArguments& given) {
     try {
         const std::vector<InputMesh> input = read_input_meshes(*reading.scene);
         const RunCost cost = count_cost(*reading.scene, input, options);
-        const std::optional<Error> refusal = refusal_of(cost, options);
+        const std::optional<Error> refusal = refusal_of(*reading.scene, cost, options);
         for (const InputMesh& one : input) json["meshes"].push_back(mesh_json(one));
         json["cost"] = with_whole_counts(cost_json(cost));
         json["stages"] = stages_json(*reading.scene, cost);

@@ -234,7 +234,7 @@ DrawOutcome outcome_of(const Shot& shot, const FrameRange& frames, const Rendere
 
 }  // namespace
 
-void check_drawing(const RenderSettings& settings) { try_canvas(settings.gl, thread_count()); }
+void check_drawing(const RenderSettings& settings) { try_canvas(settings, thread_count()); }
 
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
                      const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch,

@@ -32,8 +32,8 @@ struct DrawOutcome {
     std::vector<std::string> warning;     // all told already
 };
 
-// Opens and closes an OpenGL context, so that a run that cannot be drawn is refused before it is
-// simulated. Throws Error(output).
+// Opens and closes an OpenGL context with what pictures are drawn into, so that a run that cannot
+// be drawn is refused before it is simulated. Throws Error(output).
 void check_drawing(const RenderSettings& settings);
 
 // Throws Error(command_line) when the run has no such frames, Error(output), Interrupted. Only

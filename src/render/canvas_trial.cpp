@@ -17,6 +17,7 @@
 #include "base/interrupt.h"
 #include "base/process.h"
 #include "render/canvas.h"
+#include "render/targets.h"
 
 namespace swage {
 
@@ -25,10 +26,13 @@ namespace {
 constexpr std::size_t kLongestReason = 4096;  // which a pipe holds
 constexpr int kPatience = 60;                 // [s]; a window opens in one or two
 
-[[noreturn]] void try_here(GlProviderKind kind, int threads, int to_parent, pid_t parent) {
+[[noreturn]] void try_here(const RenderSettings& settings, int threads, int to_parent,
+                           pid_t parent) {
     become_child(parent);
     try {
-        const Canvas canvas(kind, threads);
+        Canvas canvas(settings.gl, threads);
+        canvas.make_current();
+        try_targets(canvas.gl(), settings);
     } catch (const std::exception& error) {
         const std::size_t size = std::min(std::strlen(error.what()), kLongestReason);
         [[maybe_unused]] const ssize_t written = ::write(to_parent, error.what(), size);
@@ -38,7 +42,7 @@ constexpr int kPatience = 60;                 // [s]; a window opens in one or t
 
 }  // namespace
 
-void try_canvas(GlProviderKind kind, int threads) {
+void try_canvas(const RenderSettings& settings, int threads) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) return;  // then it is tried where it is wanted
     const FileHandle from_child(ends[0]);
@@ -47,7 +51,7 @@ void try_canvas(GlProviderKind kind, int threads) {
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0) return;
-    if (child == 0) try_here(kind, threads, to_parent.id(), parent);
+    if (child == 0) try_here(settings, threads, to_parent.id(), parent);
     to_parent.close();
     const bool hangs = !ends_within(child, kPatience);
     if (hangs) ::kill(child, SIGKILL);

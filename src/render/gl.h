@@ -53,6 +53,7 @@ namespace swage {
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                             \
     X(PFNGLGETSHADERIVPROC, GetShaderiv)                                       \
     X(PFNGLGETSTRINGPROC, GetString)                                           \
+    X(PFNGLGETTEXLEVELPARAMETERIVPROC, GetTexLevelParameteriv)                 \
     X(PFNGLGETUNIFORMBLOCKINDEXPROC, GetUniformBlockIndex)                     \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                         \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                                       \

@@ -96,7 +96,7 @@ struct Renderer::Parts {
     SurfaceShaders surface_shaders;
     std::optional<SurfaceShaders> light_shaders;  // these and the next two when first needed
     GlHandle frame_buffer;
-    PictureTargets bytes{GL_RGBA8}, light{GL_RGBA16F};
+    PictureTargets bytes{kStillFormat.color}, light{kLightFormat.color};
     Target layered;
     std::optional<LayerShaders> layer_shaders, triangle_shaders;
     Stopwatch* watch = nullptr;
@@ -290,8 +290,7 @@ std::vector<float> Renderer::Parts::draw_flat(const Picture& picture,
                                               const std::vector<Drawable>& drawables, bool ground,
                                               const LayerShaders& by) {
     if (layered.width == 0) {
-        layered = make_target(gl, settings.width, settings.height,
-                              {.color = GL_RGBA32F, .depth_buffer = true});
+        layered = make_target(gl, settings.width, settings.height, kLayerFormat);
     }
     layered.bind(gl);
     gl.ClearColor(0, 0, 0, 0);

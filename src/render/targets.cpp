@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/targets.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 
 namespace swage {
@@ -71,6 +73,39 @@ Target make_target(const Gl& gl, int width, int height, const TargetFormat& form
              width, height, status);
     }
     return target;
+}
+
+namespace {
+
+// Asks without making it.
+bool can_make(const Gl& gl, int width, int height, GLenum format) {
+    gl.TexImage2D(GL_PROXY_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, GL_RGBA,
+                  GL_FLOAT, nullptr);
+    GLint given = 0;
+    gl.GetTexLevelParameteriv(GL_PROXY_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &given);
+    return given == width;
+}
+
+}  // namespace
+
+void try_targets(const Gl& gl, const RenderSettings& settings) {
+    const int width = settings.width, height = settings.height;
+    // The largest of a pixel: of them all less would do.
+    const GLenum format = !settings.passes.empty() ? kLayerFormat.color : kStillFormat.color;
+    if (can_make(gl, width, height, format)) return;
+    const int longer = std::max(width, height);
+    const auto scaled = [&](int side, int to) {
+        return std::max(1, static_cast<int>(static_cast<long>(side) * to / longer));
+    };
+    int most = 0, beyond = longer;
+    while (beyond - most > 1) {
+        const int between = most + (beyond - most) / 2;
+        const bool can = can_make(gl, scaled(width, between), scaled(height, between), format);
+        (can ? most : beyond) = between;
+    }
+    fail(ExitCode::output, "OpenGL cannot draw pictures of {} x {} pixels{} here, at most {} x {}",
+         width, height, settings.passes.empty() ? "" : " with their passes", scaled(width, most),
+         scaled(height, most));
 }
 
 }  // namespace swage

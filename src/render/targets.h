@@ -6,6 +6,7 @@
 
 #include "render/canvas.h"
 #include "render/gl_handle.h"
+#include "render/settings.h"
 
 namespace swage {
 
@@ -25,6 +26,11 @@ struct TargetFormat {
     int samples = 0;  // above 0: buffers for multisampling instead of textures
 };
 
+// Of a still; of its light, which may be brighter than white; of what is not blended.
+inline constexpr TargetFormat kStillFormat{.color = GL_RGBA8, .depth_buffer = true},
+    kLightFormat{.color = GL_RGBA16F, .depth_buffer = true},
+    kLayerFormat{.color = GL_RGBA32F, .depth_buffer = true};
+
 // What a picture is drawn into: samples and their mean, or what is smoothed afterwards; each is
 // made when first needed.
 struct PictureTargets {
@@ -34,5 +40,9 @@ struct PictureTargets {
 
 // Throws Error(output) when the driver cannot make it.
 Target make_target(const Gl& gl, int width, int height, const TargetFormat& format);
+
+// Throws Error(output) where pictures are larger than the driver can make them with their passes,
+// and tells the largest of their shape.
+void try_targets(const Gl& gl, const RenderSettings& settings);
 
 }  // namespace swage

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 
 #include "geometry/box_mesh.h"
@@ -425,6 +426,35 @@ TEST_CASE("a toughness that check advises is none that it then asks about") {
     CHECK(taken.code == 0);
     CHECK_FALSE(says(taken.err, "unit"));
     CHECK_FALSE(says(taken.out, "do not resolve"));
+}
+
+TEST_CASE("pictures larger than can be drawn are refused before a run, and the largest is told") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path()), run = scratch.path() / "run";
+    const std::vector<std::string> large = {"--set", "render.size=[15000, 7500]", "--set",
+                                            "render.passes=[\"depth\"]"};
+    const std::string why =
+        "OpenGL cannot draw pictures of 15000 x 7500 pixels with their passes here, at most ";
+    for (std::vector<std::string> words : {std::vector<std::string>{"check", scene.string()},
+                                           {"run", scene.string(), "--out", run.string()}}) {
+        words.insert(words.end(), large.begin(), large.end());
+        const Outcome outcome = run_swage(words);
+        INFO(outcome.err);
+        if (outcome.code == 7) return;  // of so large ones there is no memory here
+        CHECK(outcome.code == 5);
+        CHECK_FALSE(fs::exists(run));
+        const std::size_t at = outcome.err.find(why);
+        int width = 0, height = 0;
+        REQUIRE(at != std::string::npos);
+        REQUIRE(std::sscanf(outcome.err.c_str() + at + why.size(), "%d x %d", &width, &height) ==
+                2);
+        CHECK(width == Approx(2 * height).margin(1));
+        // And so large a one is taken.
+        const std::string size = fmt::format("render.size=[{}, {}]", width, height);
+        CHECK(run_swage(
+                  {"check", scene.string(), "--set", size, "--set", "render.passes=[\"depth\"]"})
+                  .code == 0);
+    }
 }
 
 TEST_CASE("check tells of a gap that cells fill, however many they are") {
