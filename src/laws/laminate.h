@@ -10,7 +10,9 @@
 // so that layers in series share the stress and layers side by side the strain. By the minimum the
 // forces are the gradient of W with a held. Where a material can flow, w_m is what its increment
 // from the committed history takes, which is convex too. Plastic flow couples strain and modes
-// within each material as in laws/cell.h.
+// within each material as in laws/cell.h. What is crushed more than its cell has the guard of
+// laws/layer_guard.h besides: its law alone turns back, and W would have a second minimum in which
+// the softer one is inside out.
 //
 // Source of the jump: rank-one laminates, e.g. G. Milton, "The theory of composites", 2002, ch. 9.
 // a is found by Broyden's method from the laminate of small strains (C. Broyden, "A class of
@@ -26,6 +28,7 @@
 
 #include "laws/cell_forces.h"
 #include "laws/dual.h"
+#include "laws/layer_guard.h"
 
 namespace swage {
 
@@ -43,6 +46,7 @@ struct PhaseState {
     Columns<N> gradient;       // F(c_m)
     CellModes<N> modes;        // (F(c_m) A_m)^T Q
     Columns<N> stress;         // P_m [Pa]
+    Columns<N> whole_stress;   // what F(c_m) does to w_m besides [Pa]
     CellModes<N> mode_stress;  // dW_q/dq of a whole cell
     CellFlowed<N> flowed;      // of what yields
 };
@@ -85,6 +89,34 @@ SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState
     s.mode_stress = s.flowed.kept * s.flowed.mode_stress;
 }
 
+// The guard of laws/layer_guard.h, of a material whose gradient is `gradient` without the jump.
+template <typename N>
+SWAGE_INLINE LayerGuard<N> layer_guard(const Phase<N>& m, const Columns<N>& f,
+                                       const Columns<N>& gradient) {
+    const double whole = guarded_volume(m.kind, *m.law);
+    const N volume = dot(f.x, cross(f.y, f.z)), none = 0.0 * volume;
+    if (!any_below(volume, whole)) return {none, none, none};
+    const LayerGuard<N> g =
+        guard_layer(whole, volume, dot(gradient.x, cross(gradient.y, gradient.z)));
+    const double modulus = m.law->bulk + 4.0 / 3 * m.law->shear;
+    return {modulus * g.energy, modulus * g.slope, modulus * g.whole_slope};
+}
+// Stress of a part of the cell, whose gradient is s.gradient without the jump.
+template <typename N>
+SWAGE_INLINE void find_part_stress(const Phase<N>& m, const Columns<N>& f, PhaseState<N>& s,
+                                   double turning = 1) {
+    find_stress(m, f, s, turning);
+    const LayerGuard<N> guard = layer_guard(m, f, s.gradient);
+    const auto push = [&](const N& by, const Columns<N>& at) __attribute__((always_inline)) {
+        return turned_by(
+            Columns<N>{by * cross(at.y, at.z), by * cross(at.z, at.x), by * cross(at.x, at.y)}, at,
+            turning);
+    };
+    const Columns<N> own = push(guard.slope, f);
+    s.stress = {s.stress.x + own.x, s.stress.y + own.y, s.stress.z + own.z};
+    s.whole_stress = push(guard.whole_slope, s.gradient);
+}
+
 template <typename N>
 struct Laminate {
     PhaseState<N> phase[2];
@@ -118,7 +150,7 @@ SWAGE_INLINE Phase<Dual<N>> constant(const Phase<N>& m) {
 // What a change of a by each of the axes does to the traction P n at gradient f + a n^T.
 template <typename N>
 SWAGE_INLINE Columns<N> traction_slope(const Phase<N>& m, const Columns<N>& f,
-                                       const CellModes<N>& modes, const Triple<N>& n,
+                                       const PhaseState<N>& at, const Triple<N>& n,
                                        double turning) {
     const Phase<Dual<N>> phase = constant(m);
     Columns<N> slope{};
@@ -127,9 +159,10 @@ SWAGE_INLINE Columns<N> traction_slope(const Phase<N>& m, const Columns<N>& f,
         const Triple<N> e = {axis == 0 ? one : none, axis == 1 ? one : none,
                              axis == 2 ? one : none};
         PhaseState<Dual<N>> s;
-        s.modes = constant(modes);
-        find_stress(phase, {pair(f.x, n.x * e), pair(f.y, n.y * e), pair(f.z, n.z * e)}, s,
-                    turning);
+        s.modes = constant(at.modes);
+        s.gradient = {constant(at.gradient.x), constant(at.gradient.y), constant(at.gradient.z)};
+        find_part_stress(phase, {pair(f.x, n.x * e), pair(f.y, n.y * e), pair(f.z, n.z * e)}, s,
+                         turning);
         const Triple<Dual<N>> t = s.stress * constant(n);
         (axis == 0 ? slope.x : axis == 1 ? slope.y : slope.z) = {t.x.slope, t.y.slope, t.z.slope};
     }
@@ -170,7 +203,7 @@ SWAGE_INLINE Columns<N> jump_slope(const Phase<N> (&m)[2], const Triple<N>& n, c
     Columns<N> sum{};
     for (int p = 0; p < 2; ++p) {
         const Columns<N> slope = traction_slope(
-            m[p], jumped(r.phase[p].gradient, n, share[p] * r.jump), r.phase[p].modes, n, turning);
+            m[p], jumped(r.phase[p].gradient, n, share[p] * r.jump), r.phase[p], n, turning);
         const N weight = p == 0 ? share[0] : -1.0 * share[1];
         const N firm = (kFirm * m[p].law->shear) * weight;
         sum = {sum.x + weight * slope.x, sum.y + weight * slope.y, sum.z + weight * slope.z};
@@ -225,8 +258,7 @@ SWAGE_INLINE Columns<N> pick(const M& which, const Columns<N>& a, const Columns<
 
 // `start`: the jump that the search begins with, as jump_in_cell() has it. It is committed as what
 // has flowed is: far past yield W has more than one minimum, and whoever seeks the one that pushes
-// begins there. NOTE: what is elastic begins with none: crushed, it would go over to another
-// minimum, bear less from then on, and keep some of its strain when let go.
+// begins there. What is elastic begins with none: its forces are those of its strain alone.
 template <typename N>
 SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const Triple<N>& n,
                            double spacing, Laminate<N>& r, const Triple<N>& start = Triple<N>{}) {
@@ -267,7 +299,7 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
     for (r.rounds = 0;; ++r.rounds) {
         Triple<N> pull[2];
         for (int p = 0; p < 2; ++p) {
-            find_stress(m[p], jumped(r.phase[p].gradient, n, share[p] * r.jump), r.phase[p]);
+            find_part_stress(m[p], jumped(r.phase[p].gradient, n, share[p] * r.jump), r.phase[p]);
             pull[p] = r.phase[p].stress * n;
         }
         const Triple<N> left = pull[0] - pull[1];
@@ -322,10 +354,11 @@ SWAGE_INLINE CornerSums<N> laminate_forces(const CornerSums<N>& c, const Phase<N
         const N scale = volume * m[p].fill;
         const Triple<N> centre{};
         const Symmetric<N> a = taken_back(m[p].history);
-        CornerSums<N> f =
-            sum_forces(c, s.gradient * a, a,
-                       Columns<N>{scale * s.stress.x, scale * s.stress.y, scale * s.stress.z},
-                       mode_fill(m[p].fill) * s.mode_stress, centre, spacing);
+        const Columns<N> push = {scale * (s.stress.x + s.whole_stress.x),
+                                 scale * (s.stress.y + s.whole_stress.y),
+                                 scale * (s.stress.z + s.whole_stress.z)};
+        CornerSums<N> f = sum_forces(c, s.gradient * a, a, push,
+                                     mode_fill(m[p].fill) * s.mode_stress, centre, spacing);
         f.xy = f.xy + at.y * f.x + at.x * f.y;
         f.yz = f.yz + at.z * f.y + at.y * f.z;
         f.zx = f.zx + at.z * f.x + at.x * f.z;
@@ -356,7 +389,7 @@ SWAGE_INLINE CornerSums<N> laminate_slope(const CornerSums<N>& c, const CornerSu
             PhaseState<D>& s = r.phase[p];
             s.gradient = phase_gradient(x, phase[p].at, spacing);
             s.modes = pulled_back(s.gradient * taken_back(phase[p].history), x);
-            find_stress(phase[p], jumped(s.gradient, normal, share[p] * r.jump), s, turning);
+            find_part_stress(phase[p], jumped(s.gradient, normal, share[p] * r.jump), s, turning);
             const Triple<D> pull = s.stress * normal;
             left = p == 0 ? pull : left - pull;
             s.gradient = slope_scaled(s.gradient, turning);

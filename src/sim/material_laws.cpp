@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/material_laws.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "laws/volume_guard.h"
+#include "laws/layer_guard.h"
 
 namespace swage {
 
@@ -33,9 +32,6 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
     return laws;
 }
 
-double guarded_volume(const MaterialLaw& law) {
-    return law.kind == CellKind::foam ? std::min(law.moduli.foam_least, kGuardedVolume)
-                                      : kGuardedVolume;
-}
+double guarded_volume(const MaterialLaw& law) { return guarded_volume(law.kind, law.moduli); }
 
 }  // namespace swage

@@ -92,7 +92,8 @@ double energy_in(const Aggregate& matter, const MixedCell& cell, const OneMixed&
         const PhaseState<double>& s = one.found.phase[p];
         const Columns<double> f = gradient_of(one, cell, p);
         const Symmetric<double> a = taken_back(m.history);
-        const double mean = mean_energy(m.kind, *m.law, f, cell_strain(f * a));
+        const double mean = mean_energy(m.kind, *m.law, f, cell_strain(f * a)) +
+                            layer_guard(m, f, s.gradient).energy;
         const CellModes<double> q = s.modes - m.history.modes;
         sum += volume * m.fill * mean +
                0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, a, q), q);
