@@ -107,9 +107,10 @@ std::vector<EdgePoint> edge_points(const std::vector<Patch>& patch) {
 
 }  // namespace
 
-void add_edge_points(const Aggregate& matter, SurfacePoints& points) {
+std::vector<int> add_edge_points(const Aggregate& matter, SurfacePoints& points) {
     const std::size_t own = points.size();
     const std::vector<Patch> patch = patches_of(points, matter);
+    std::vector<int> carried_by;
     std::vector<double> given(own, 0.0);          // of a patch's area
     std::vector<Vec3> moment(own, Vec3::Zero());  // about its middle
     for (const EdgePoint& edge : edge_points(patch)) {
@@ -125,12 +126,14 @@ void add_edge_points(const Aggregate& matter, SurfacePoints& points) {
             moment[p] += edge.share * (patch[p].place - edge.place);
         }
         points.add(points.row(carrier), there, sum, normal.normalized());
+        carried_by.push_back(carrier);
     }
     for (std::size_t p = 0; p < own; ++p) {
         if (given[p] == 0) continue;
         const Vec3 inward = moment[p] / (1 - given[p]);
         points.move(p, points.place(p) + inward, (1 - given[p]) * points.area(p));
     }
+    return carried_by;
 }
 
 }  // namespace swage

@@ -12,7 +12,7 @@ namespace swage {
 // area, and the corner a sixteenth, and moves inward: Radau's rule, by which area and its first
 // moments stay as they are, and along a straight patch the second too. The new point has the mean
 // of what it is given, since one side at a time lies on what it meets. New points come after the
-// others, which keep their carriers and numbers.
-void add_edge_points(const Aggregate& matter, SurfacePoints& points);
+// others, which keep their carriers and numbers; of each the patch whose cell carries it.
+std::vector<int> add_edge_points(const Aggregate& matter, SurfacePoints& points);
 
 }  // namespace swage

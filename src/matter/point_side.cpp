@@ -81,13 +81,37 @@ std::vector<ParticleId> and_beside(const Aggregate& matter, const Vec3i& site,
     return more;
 }
 
-// Of the whole cells that by which a force grows least, a firm one where there is any.
 PointCarriage carriage_by(const Aggregate& matter, std::size_t point, CornerMask side) {
+    const PointCarriage own{matter.surface.row(point), matter.surface.place(point)};
+    return is_parted(matter, point) ? carriage_on_side(matter, own, side) : own;
+}
+
+}  // namespace
+
+SurfacePoints::Carriers PointCarriage::carriers() const {
+    SurfacePoints::Carriers by{corners_of(row), trilinear_weights(place)};
+    if (corners == kAllCorners) return by;
+    double sum = 0;
+    for (int c = 0; c < 8; ++c) {
+        by.weight[c] = corners >> c & 1 ? std::max(by.weight[c], 0.0) + kLeast : 0;
+        sum += by.weight[c];
+    }
+    for (double& weight : by.weight) weight /= sum;
+    return by;
+}
+
+Vec3 PointCarriage::position(const Aggregate& matter) const {
+    const SurfacePoints::Carriers by = carriers();
+    Vec3 x = Vec3::Zero();
+    for (int c = 0; c < 8; ++c) x += by.weight[c] * matter.particle_position.at(by.corner[c]);
+    return x;
+}
+
+// Of the whole cells that by which a force grows least, a firm one where there is any.
+PointCarriage carriage_on_side(const Aggregate& matter, const PointCarriage& own, CornerMask side) {
     constexpr int kReach = 2;  // cells: a slanted cut leaves what it only grazes without one beside
-    const SurfacePoints& surface = matter.surface;
-    const PointCarriage own{surface.row(point), surface.place(point)};
-    if (!is_parted(matter, point)) return own;
-    const SurfacePoints::Carriers by = surface.carriers(point);
+    if (cell_is_whole(matter, own.row)) return own;
+    const SurfacePoints::Carriers by = own.carriers();
     const CornerMask corners = own_corners(matter, by.corner, by.weight, side);
     std::vector<ParticleId> on_side;
     for (int c = 0; c < 8; ++c) {
@@ -114,27 +138,6 @@ PointCarriage carriage_by(const Aggregate& matter, std::size_t point, CornerMask
         });
     }
     return best;
-}
-
-}  // namespace
-
-SurfacePoints::Carriers PointCarriage::carriers() const {
-    SurfacePoints::Carriers by{corners_of(row), trilinear_weights(place)};
-    if (corners == kAllCorners) return by;
-    double sum = 0;
-    for (int c = 0; c < 8; ++c) {
-        by.weight[c] = corners >> c & 1 ? std::max(by.weight[c], 0.0) + kLeast : 0;
-        sum += by.weight[c];
-    }
-    for (double& weight : by.weight) weight /= sum;
-    return by;
-}
-
-Vec3 PointCarriage::position(const Aggregate& matter) const {
-    const SurfacePoints::Carriers by = carriers();
-    Vec3 x = Vec3::Zero();
-    for (int c = 0; c < 8; ++c) x += by.weight[c] * matter.particle_position.at(by.corner[c]);
-    return x;
 }
 
 PointCarriage carriage_on_side(const Aggregate& matter, std::size_t point) {

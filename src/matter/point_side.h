@@ -31,10 +31,17 @@ struct PointCarriage {
 // side, by weights that keep force and moment. Where no blade has told sides, as of a crack, the
 // new surface lies half-way.
 PointCarriage carriage_on_side(const Aggregate& matter, std::size_t point);
+// Of any point that a cell carried by itself, on the side of these corners.
+PointCarriage carriage_on_side(const Aggregate& matter, const PointCarriage& own, CornerMask side);
 // Of a point part of whose patch lies on this piece: by the corners that its cell has of that.
 // Where it has none, as above.
 PointCarriage carriage_on_piece(const Aggregate& matter, std::size_t point, const Pieces& pieces,
                                 int piece);
+
+// From now on a whole cell carries it.
+inline void carry(SurfacePoints& points, std::size_t point, const PointCarriage& by) {
+    points.set(point, by.row, by.place, points.area(point), points.normal(point));
+}
 
 // The corners of a point's cell on its side of a surface that parts that.
 struct PointSide {

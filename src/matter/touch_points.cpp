@@ -3,14 +3,22 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "matter/edge_points.h"
 #include "matter/open_faces.h"
 
 namespace swage {
 
-TouchPoints::TouchPoints(const Aggregate& matter) : points_(matter.surface) {
+namespace {
+
+constexpr std::size_t kPoints = 4096;  // a chunk
+
+}  // namespace
+
+TouchPoints::TouchPoints(const Aggregate& matter, bool beside_cuts)
+    : beside_cuts_(beside_cuts), points_(matter.surface) {
     const Lattice& lattice = matter.lattice;
-    add_edge_points(matter, points_);
+    patch_of_edge_ = add_edge_points(matter, points_);
     own_ = points_.size();
     const std::vector<CellId> by_low_corner = lattice.cells_by_low_corner();
     for (std::size_t p = 0; p < own_; ++p) {
@@ -59,12 +67,52 @@ void TouchPoints::add_loose(const Aggregate& matter) {
     }
 }
 
-void TouchPoints::connections_changed(const Aggregate& matter) {
+// Of the body's own points those in parted cells that a blade has told the side of.
+std::vector<TouchPoints::Carried> TouchPoints::carry_beside(const Aggregate& matter) {
+    const std::size_t patches = matter.surface.size();
+    const auto carriage = [&](std::size_t p) {
+        return PointCarriage{points_.row(p), points_.place(p)};
+    };
+    std::vector<Carried> were;
+    for (const auto& [point, molded] : beside_) {
+        were.push_back({point, carriage(std::size_t(point))});
+        carry(points_, std::size_t(point), molded);
+    }
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Carried>& found) {
+        for (std::size_t p = begin; p < end; ++p) {
+            if (meets_[p]) continue;
+            const CornerMask side =
+                matter.surface.side(p < patches ? p : std::size_t(patch_of_edge_[p - patches]));
+            if (side == kAllCorners) continue;
+            const PointCarriage by = carriage_on_side(matter, carriage(p), side);
+            if (by.is_whole) found.push_back({static_cast<int>(p), by});
+        }
+    };
+    beside_.clear();
+    std::vector<Carried> changed;
+    auto was = were.begin();
+    for (const auto& [point, by] : parallel_collect<Carried>(own_, kPoints, find)) {
+        const PointCarriage molded = carriage(std::size_t(point));
+        carry(points_, std::size_t(point), by);
+        meets_[std::size_t(point)] = 1;
+        beside_.push_back({point, molded});
+        while (was != were.end() && was->point < point) changed.push_back(*was++);
+        const bool had = was != were.end() && was->point == point;
+        if (!had || was->by.row != by.row) changed.push_back({point, had ? was->by : molded});
+        if (had) ++was;
+    }
+    changed.insert(changed.end(), was, were.end());
+    return changed;
+}
+
+std::vector<TouchPoints::Carried> TouchPoints::connections_changed(const Aggregate& matter) {
     const Lattice& lattice = matter.lattice;
     whole_ = whole_cells(matter);
     meets_.assign(points_.size(), 0);
     for (std::size_t p = 0; p < own_; ++p) meets_[p] = carrier_[p] < 0 || whole_[carrier_[p]];
-    if (std::find(whole_.begin(), whole_.end(), 0) == whole_.end()) return;
+    std::vector<Carried> changed;
+    if (beside_cuts_) changed = carry_beside(matter);
+    if (std::find(whole_.begin(), whole_.end(), 0) == whole_.end()) return changed;
     for_each_open_face(lattice, whole_, [&](const CellRun& run, int n, int face) {
         const Vec3i site(run.i + n, run.j, run.k);
         const auto point = static_cast<std::size_t>(face_point(lattice, run.first + n, site, face));
@@ -72,6 +120,7 @@ void TouchPoints::connections_changed(const Aggregate& matter) {
         meets_[point] = 1;
     });
     add_loose(matter);
+    return changed;
 }
 
 }  // namespace swage

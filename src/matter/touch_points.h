@@ -2,8 +2,9 @@
 // The points of a body with which it meets tools, other bodies and itself: those of its surface as
 // molded, with its edges and corners, and where cells are no longer whole, cut or broken, a new
 // surface half-way through them: a point before each face of a whole cell that looks at one, half a
-// spacing out, which the whole cell carries. What a cell no longer whole carries meets nothing;
-// particles that no whole cell has left meet by themselves.
+// spacing out, which the whole cell carries. What a blade has left of a cell on either side of its
+// path is carried by a whole one of that side (matter/point_side.h). Else what a cell no longer
+// whole carries meets nothing; particles that no whole cell has left meet by themselves.
 #pragma once
 
 #include <map>
@@ -11,16 +12,31 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "matter/point_side.h"
 
 namespace swage {
 
 class TouchPoints {
   public:
-    explicit TouchPoints(const Aggregate& matter);
+    // `beside_cuts`: whether what blades have left of cells meets anything. NOTE: among bodies it
+    // does not: cells of each side hold what comes up to half-way through a cut cell, wherever in
+    // it the blade went, and would hold the other side's outside there too.
+    explicit TouchPoints(const Aggregate& matter, bool beside_cuts = true);
 
+    // A point and what carried it before.
+    struct Carried {
+        int point;
+        PointCarriage by;
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(point, by);
+        }
+    };
     // A blade or a crack has changed which cells are whole, or a step back has made them so again.
-    // Points keep their numbers.
-    void connections_changed(const Aggregate& matter);
+    // Points keep their numbers; returns those that another cell carries from now on, in their
+    // order.
+    std::vector<Carried> connections_changed(const Aggregate& matter);
 
     const SurfacePoints& points() const { return points_; }
     std::size_t size() const { return points_.size(); }
@@ -36,19 +52,23 @@ class TouchPoints {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(points_, carrier_, home_, meets_, whole_, face_, loose_);
+        io(points_, carrier_, home_, meets_, whole_, beside_, face_, loose_);
     }
 
   private:
+    std::vector<Carried> carry_beside(const Aggregate& matter);
     int face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face);
     int loose_point(double spacing, ParticleId particle);
     void add_loose(const Aggregate& matter);
 
+    bool beside_cuts_;
     SurfacePoints points_;
+    std::vector<int> patch_of_edge_;  // of each point at an edge, that beside it
     std::size_t own_;
     std::vector<CellId> carrier_;  // of each point of its own; -1: no cell
     std::vector<Vec3i> home_;
     std::vector<char> meets_, whole_;
+    std::vector<Carried> beside_;  // its own that a cell beside theirs carries: as molded, by point
     std::map<std::pair<CellId, int>, int> face_;  // the point before a face of a cell
     std::map<ParticleId, int> loose_;             // the point of a particle
 };

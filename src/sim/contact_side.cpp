@@ -127,7 +127,7 @@ ContactSide::ContactSide(Aggregate& matter, bool itself, std::shared_ptr<const R
     : matter_(&matter),
       patch_(matter),
       itself_(itself),
-      touch_(matter),
+      touch_(matter, false),
       molded_(molded ? std::move(molded) : std::make_shared<const RestSurface>(matter)) {
     find_cells();
 }

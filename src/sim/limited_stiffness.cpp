@@ -55,7 +55,7 @@ double share_borne(const Aggregate& matter, const SurfacePoints& points,
 
 LimitedPoints one_way(const Aggregate& from, const Aggregate& onto, const SimSettings& settings,
                       double most) {
-    const TouchPoints touch(from), others(onto);
+    const TouchPoints touch(from, false), others(onto, false);
     const double scale = settings.stiffness_of_contacts();
     LimitedPoints limited;
     limited.asked = stiffness_on_body(from, touch.points(), onto, scale, settings.solver);

@@ -43,13 +43,57 @@ void MovingContacts::limit_stiffness(const Aggregate& matter, double step) {
 }
 
 double MovingContacts::connections_changed(const Aggregate& matter, const Drive& now) {
+    const ToolPairs& pairs = rest_.pairs();
     double held = rest_.grips().stored_energy(matter, now);
+    std::vector<Vec3> place;
+    std::vector<double> stiffness;
+    for (const ToolPairs::Pair& pair : pairs) {
+        place.push_back(pairs.place(pair, matter));
+        stiffness.push_back(pairs.stiffness(pair));
+    }
     rest_.connections_changed(matter);
     held -= rest_.grips().stored_energy(matter, now);
     for (std::size_t n = 0; n < memory_.size(); ++n) {
-        if (rest_.pairs()[n].gone) held += std::exchange(memory_[n].next.stored, 0);
+        Touch& next = memory_[n].next;
+        if (pairs[n].gone) {
+            held += std::exchange(next.stored, 0);
+            continue;
+        }
+        const Vec3 x = pairs.place(pairs[n], matter);
+        const double was = next.depth;
+        if (x != place[n]) {
+            const Pose tool_from_world = now.world_from_tool[pairs[n].tool].inverse();
+            carry(n, tool_from_world * place[n], tool_from_world * x);
+        }
+        const double k = pairs.stiffness(pairs[n]);
+        if (!next.history.touches || (k == stiffness[n] && next.depth == was)) continue;
+        const double hold = stickiness_ * pairs.points().area(pairs[n].point);
+        const Vec3 reach = next.anchor - next.local;
+        const double less = spring_energy(stiffness[n], was, hold) -
+                            spring_energy(k, next.depth, hold) +
+                            0.5 * (stiffness[n] - k) * reach.squaredNorm();
+        next.stored -= less;
+        held += less;
     }
     return held;
+}
+
+// Another cell carries the point from now on, by which it lies elsewhere in the tool's frame: that
+// is no way that it has gone, and what makes it deeper has not been pressed in.
+void MovingContacts::carry(std::size_t n, const Vec3& from, const Vec3& to) {
+    ToolPairs& pairs = rest_.pairs();
+    ToolPairs::Pair& pair = pairs[n];
+    Touch& next = memory_[n].next;
+    const auto depth_at = [&](const Vec3& local) {
+        ToolEntry entry;
+        return -pairs.distance(pair, local, local, entry).value;
+    };
+    const double was = depth_at(from), depth = depth_at(to);
+    for (Vec3* at : {&memory_[n].last.local, &next.local, &next.anchor, &pair.anchor}) {
+        *at += to - from;
+    }
+    pair.deep += std::max(0.0, depth - std::max(was, 0.0));
+    if (depth < was) next.depth = depth;
 }
 
 void MovingContacts::find_candidates(const Aggregate& matter, const Drive& now) {

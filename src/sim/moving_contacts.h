@@ -86,6 +86,7 @@ class MovingContacts {
         using IsPlain = ToolWay;
         Pose from, to;
     };
+    void carry(std::size_t n, const Vec3& from, const Vec3& to);
     struct Meeting;
     std::vector<Meeting> find_meetings(const Aggregate& matter, const Drive& now, bool anew);
     void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,

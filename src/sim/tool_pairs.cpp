@@ -63,11 +63,16 @@ void ToolPairs::connections_changed(const Aggregate& matter) {
     if (touch_ == nullptr) return;
     if (touch_.use_count() > 1) touch_ = std::make_shared<TouchPoints>(*touch_);  // saved states'
     const std::size_t before = touch_->size();
-    touch_->connections_changed(matter);
+    const auto moved = touch_->connections_changed(matter);
     for (Pair& pair : pair_) pair.gone = pair.gone || !touch_->meets(pair.point);
-    if (touch_->size() == before) return;
+    if (touch_->size() == before && moved.empty()) return;
     layer_ = {matter, points(), settings_.solver};
     if (!stiffness_limit_.empty()) find_limits(matter);
+    for (const auto& [point, was] : moved) {
+        const auto p = static_cast<std::size_t>(point);
+        if (p >= start_position_.size()) continue;
+        start_position_[p] += points().position(p, matter.particle_position) - was.position(matter);
+    }
     for (std::size_t p = start_position_.size(); p < points().size(); ++p) {
         start_position_.push_back(points().position(std::size_t(p), matter.particle_position));
     }

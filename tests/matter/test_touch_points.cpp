@@ -106,6 +106,52 @@ TEST_CASE("where a cell is parted, whole ones look at it half a spacing before t
         CHECK(touch.points().area(p) == Approx(kA * kA));
         CHECK(touch.home()[p].x() == (out.x() > 0 ? 1 : 3));
     }
+}
+
+TEST_CASE("what a blade leaves of a cell meets tools where it lies, by its own side alone") {
+    Aggregate m = make_block(6, 3, 3, kA, Material{});
+    const Vec3 at(0.02, 0, 0), normal = Vec3(1, GENERATE(0.0, 0.3), 0).normalized();
+    const TouchPoints molded(m);
+    TouchPoints touch = molded, among_bodies(m, false);
+    sever_plane(m, at, normal);
+    const auto changed = touch.connections_changed(m);
+    CHECK(among_bodies.connections_changed(m).empty());
+    std::size_t carried = 0, parted = 0;
+    for (std::size_t p = 0; p < touch.own(); ++p) {
+        CHECK(touch.meets(int(p)));
+        CHECK((place_of(touch, p, m) - place_of(molded, p, m)).norm() < 1e-6);
+        CHECK(among_bodies.meets(int(p)) == cell_is_whole(m, molded.points().row(p)));
+        carried += touch.points().row(p) != molded.points().row(p);
+        parted += !cell_is_whole(m, molded.points().row(p));
+        const double beyond = normal.dot(place_of(molded, p, m) - at);
+        if (std::abs(beyond) < 0.3 * kA && p >= m.surface.size()) continue;  // as its patch
+        const SurfacePoints::Carriers by = touch.points().carriers(p);
+        for (int c = 0; c < 8; ++c) {
+            if (by.weight[c] == 0) continue;
+            CHECK((normal.dot(m.particle_reference.at(std::size_t(by.corner[c])) - at) > 0) ==
+                  (beyond > 0));
+        }
+    }
+    CHECK(carried == parted);
+    CHECK(changed.size() == parted);
+    // And a step back makes all of it whole again.
+    for (ConnectionArrays& all : m.connection) {
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            if (all.weight[p] <= 0) all.weight.set(p, 1);
+        }
+    }
+    CHECK(touch.connections_changed(m).size() == parted);
+    for (std::size_t p = 0; p < touch.own(); ++p) {
+        CHECK(touch.points().row(p) == molded.points().row(p));
+        CHECK(touch.points().place(p) == molded.points().place(p));
+    }
+}
+
+TEST_CASE("the outside of what only a crack has parted meets nothing") {
+    Aggregate m = make_block(4, 1, 1, kA, Material{});
+    TouchPoints touch(m);
+    sever_plane(m, Vec3(0.05, 0, 0), Vec3::UnitX(), [](const Vec3&) { return true; });
+    touch.connections_changed(m);
     for (std::size_t p = 0; p < m.surface.size(); ++p) {
         CHECK(touch.meets(int(p)) == cell_is_whole(m, m.surface.row(p)));
     }
