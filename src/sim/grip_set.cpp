@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "matter/parted.h"
 #include "sim/surface_forces.h"
+#include "sim/torn_forces.h"
 
 namespace swage {
 
@@ -19,17 +19,27 @@ GripSet::GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimS
 
 void GripSet::connections_changed(const Aggregate& matter) {
     torn_.clear();
+    std::shared_ptr<SurfacePoints> beside;
     for_each_grip([&](std::size_t, const Grip& grip) {
-        for (int point : grip.point) {
-            if (!swage::is_torn(matter, std::size_t(point))) continue;
-            torn_.resize(matter.surface.size(), 0);
-            torn_[std::size_t(point)] = 1;
+        const std::vector<PointCarriage> holder = holders(grip, matter);
+        for (std::size_t n = 0; n < holder.size(); ++n) {
+            const auto point = static_cast<std::size_t>(grip.point[n]);
+            if (!holder[n].is_whole) {
+                torn_.resize(matter.surface.size(), 0);
+                torn_[point] = 1;
+            } else if (holder[n].row != matter.surface.row(point)) {
+                if (!beside) beside = std::make_shared<SurfacePoints>(matter.surface);
+                carry(*beside, point, holder[n]);
+            }
         }
     });
+    const bool is_held_otherwise = beside_ != nullptr || beside != nullptr;
+    beside_ = std::move(beside);
+    if (is_held_otherwise && !limit_.empty()) find_limits(matter);
 }
 
 double GripSet::stiffness(const Aggregate& matter, int point) const {
-    const double k = layer_.stiffness(matter.surface, std::size_t(point), of_layer_);
+    const double k = layer_.stiffness(points(matter), std::size_t(point), of_layer_);
     return limit_.empty() ? k : std::min(k, limit_[point]);
 }
 
@@ -39,12 +49,18 @@ double GripSet::stiffness(const Aggregate& matter, const Grip& grip, std::size_t
 }
 
 void GripSet::limit_stiffness(const Aggregate& matter, double step) {
+    limit_step_ = step;
+    find_limits(matter);
+}
+
+void GripSet::find_limits(const Aggregate& matter) {
     limit_.clear();
     std::vector<double> all;
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
         all.push_back(stiffness(matter, int(p)));
     }
-    limit_ = stiffest_of_points(matter, matter.surface, all, kGripShare / (step * step));
+    limit_ =
+        stiffest_of_points(matter, points(matter), all, kGripShare / (limit_step_ * limit_step_));
 }
 
 template <typename Act>
@@ -53,7 +69,7 @@ void GripSet::for_each_point(const Aggregate& matter, const Drive& now, const Ac
         const Pose& pose = now.world_from_grip[g];
         const bool wholly = grip.hold == Vec3::Ones();
         for_each_held(matter, grip, [&](std::size_t n, int point, double k) {
-            const Vec3 x = matter.surface_position(point);
+            const Vec3 x = points(matter).position(std::size_t(point), matter.particle_position);
             Vec3 force;
             if (wholly) {
                 force = k * (pose * grip.anchor[n] - x);
@@ -69,7 +85,7 @@ void GripSet::for_each_point(const Aggregate& matter, const Drive& now, const Ac
 void GripSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
     for_each_grip([&](std::size_t, const Grip& grip) {
         for_each_held(matter, grip, [&](std::size_t, int point, double k) {
-            spread_stiffness(matter.surface, point, k, stiffness);
+            spread_stiffness(points(matter), point, k, stiffness);
         });
     });
 }
@@ -80,14 +96,14 @@ void GripSet::add_held_points(const Aggregate& matter, const Drive& now,
         const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
         const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
         for_each_held(matter, grip, [&](std::size_t, int point, double k) {
-            held.push_back(held_point(matter.surface, point, k * hold));
+            held.push_back(held_point(points(matter), point, k * hold));
         });
     });
 }
 
 void GripSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
     for_each_point(matter, now, [&](std::size_t, int point, const Vec3&, const Vec3& f, double) {
-        spread(matter.surface, point, f, force);
+        spread(points(matter), point, f, force);
     });
 }
 
@@ -111,7 +127,7 @@ double GripSet::add_all(const Aggregate& matter, const Drive& now, Vec3Array& fo
     double stored = 0;
     for_each_point(matter, now,
                    [&](std::size_t g, int point, const Vec3& x, const Vec3& f, double k) {
-                       spread(matter.surface, point, f, force);
+                       spread(points(matter), point, f, force);
                        sums[first + g].add(x - now.world_from_grip[g].translation, f);
                        stored += 0.5 * f.squaredNorm() / k;
                    });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grips: points of a body's true surface, each held by a spring to its place in a frame that moves.
 // Forces act on the particles that carry a point, with the point's own weights, so that force and
-// moment are kept exactly. A point whose carriers hang together no more is let go.
+// moment are kept exactly. A point whose carriers hang together no more is held by what carries it
+// on its side of the cut or crack (sim/torn_forces.h), or let go.
 //
 // Of a patch that a grip's edge cuts a share s is held, its spring by s^2 softer: what the edge
 // leaves free bends and stretches as one that ends there, to a tenth of a cell. By s alone it would
@@ -9,6 +10,8 @@
 // held and with how far that reaches into the cell.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -27,7 +30,7 @@ class GripSet {
     GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
             int body);
 
-    // A blade or a crack has parted cells: points that it has torn are held no more.
+    // A blade or a crack has parted cells: points that it has torn are held by others or no more.
     void connections_changed(const Aggregate& matter);
 
     // Explicit steps of this length [s] must stay stable, so there is a stiffness that no point
@@ -57,7 +60,13 @@ class GripSet {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(limit_, torn_);
+        bool beside = beside_ != nullptr;
+        io(limit_, limit_step_, torn_, beside);
+        SurfacePoints now = beside_ ? *beside_ : SurfacePoints{};
+        if (beside) io(now);
+        if constexpr (Io::kReads) {
+            beside_ = beside ? std::make_shared<const SurfacePoints>(std::move(now)) : nullptr;
+        }
     }
 
   private:
@@ -81,6 +90,11 @@ class GripSet {
         }
     }
     bool is_torn(int point) const { return !torn_.empty() && torn_[std::size_t(point)]; }
+    // By what they are held.
+    const SurfacePoints& points(const Aggregate& matter) const {
+        return beside_ ? *beside_ : matter.surface;
+    }
+    void find_limits(const Aggregate& matter);
     double stiffness(const Aggregate& matter, int point) const;  // of a whole patch [N/m]
     // Of the grip's n-th point [N/m].
     double stiffness(const Aggregate& matter, const Grip& grip, std::size_t n) const;
@@ -91,7 +105,10 @@ class GripSet {
     SurfaceLayer layer_;
     // By point of the surface; empty: none.
     std::vector<double> limit_;  // [N/m]
-    std::vector<char> torn_;
+    double limit_step_ = 0;      // [s]
+    std::vector<char> torn_;     // and let go
+    // The body's, with those that other cells hold than as molded; null: none.
+    std::shared_ptr<const SurfacePoints> beside_;
 };
 
 }  // namespace swage

@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "matter/parted.h"
+#include "sim/torn_forces.h"
 
 namespace swage {
 
 namespace {
 
-// Of the particle that carries most of the point: what is not torn hangs together.
-int piece_at(const Aggregate& matter, const Pieces& pieces, std::size_t point) {
-    if (is_torn(matter, point)) return GrippedPieces::kNone;
-    const SurfacePoints::Carriers by = matter.surface.carriers(point);
+// Of the particle that carries most of it, whose carriers hang together.
+int piece_at(const Pieces& pieces, const SurfacePoints::Carriers& by) {
     const auto most = std::ranges::max_element(
         by.weight, [](double a, double b) { return std::abs(a) < std::abs(b); });
     return pieces.particle_piece[by.corner[std::size_t(most - by.weight.begin())]];
@@ -32,8 +30,13 @@ GrippedPieces find_gripped_pieces(const Aggregate& matter, const Apparatus& appa
         const bool is_firm = grip.hold == Vec3::Ones();
         const int holder = is_firm ? int(g) : kSeveral;
         std::vector<int>& at = found.at.emplace_back();
-        for (int point : grip.point) {
-            const int piece = piece_at(matter, found.pieces, std::size_t(point));
+        const std::vector<PointCarriage> beside = holders(grip, matter);
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const int piece =
+                beside.empty()
+                    ? piece_at(found.pieces, matter.surface.carriers(std::size_t(grip.point[n])))
+                : beside[n].is_whole ? piece_at(found.pieces, beside[n].carriers())
+                                     : kNone;
             at.push_back(piece);
             if (piece == kNone) continue;
             found.firm[std::size_t(piece)] |= is_firm;

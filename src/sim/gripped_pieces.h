@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which pieces of a body each grip really holds. A point of the surface stands on a cell; where a
-// cut or a crack has parted that, its carriers are of several pieces, and it holds none of them.
+// cut or a crack has parted that, it holds the piece on its side, by what carries it there
+// (sim/torn_forces.h), or none.
 #pragma once
 
 #include <vector>
@@ -14,7 +15,7 @@ struct GrippedPieces {
     static constexpr int kNone = -1, kSeveral = -2;
 
     Pieces pieces;
-    // Of each grip, by its points: the piece; kNone: torn.
+    // Of each grip, by its points: the piece; kNone: let go.
     std::vector<std::vector<int>> at;
     // Of each piece: the grip that alone holds it, and in every way; kSeveral: held otherwise.
     std::vector<int> by;

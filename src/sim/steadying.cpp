@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "matter/point_side.h"
 #include "sim/piece_sums.h"
 
 namespace swage {
@@ -83,7 +84,7 @@ std::vector<LeftFree> left_free(const Aggregate& matter, const Apparatus& appara
             if (gripped.at[g][i] == GrippedPieces::kNone) continue;
             const auto n = std::size_t(gripped.at[g][i]);
             ++barred[n];
-            const Vec3 r = matter.surface_position(std::size_t(grip.point[i])) - center[n];
+            const Vec3 r = position_on_side(matter, std::size_t(grip.point[i])) - center[n];
             for (int axis = 0; axis < 3; ++axis) {
                 Vec6 way;
                 way << axes.col(axis), r.cross(axes.col(axis)) / reach[n];

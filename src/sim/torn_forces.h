@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loads on points of the surface whose cells a blade or a crack has torn.
+// Loads and grips on points of the surface whose cells a blade or a crack has torn.
 #pragma once
 
 #include <vector>
@@ -20,5 +20,9 @@ std::vector<PointCarriage> bearers(const Load& load, const Aggregate& matter);
 // to press on.
 std::vector<PointCarriage> pressed_bearers(const Load& load, const Aggregate& matter,
                                            const std::vector<char>& is_parted);
+
+// Of a grip; empty: none of its points is torn. It lets go of what no whole cell carries, and of
+// what its edge leaves of less than half of a patch whose neighbours in it are of another piece.
+std::vector<PointCarriage> holders(const Grip& grip, const Aggregate& matter);
 
 }  // namespace swage

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools and bodies on the surface beside a cut.
+// Tools, grips and bodies on the surface beside a cut.
+#include "base/bytes.h"
+#include "sim/gripped_pieces.h"
+#include "sim/resting_contacts.h"
 #include "tests/sim/loads_fixture.h"
 
 using namespace swage;
@@ -48,6 +51,44 @@ double pin_force(Kind kind, double cut, double lean, double off, double way = 0.
     return report.load[0].force.norm();
 }
 
+// What a grip bears that draws half a bar, held at its far end, by all that lies within `wide`
+// cells of where it ends: at (cut, 0, 0) a plane that leans by `lean`.
+double grip_force(Kind kind, double cut, double lean, double wide) {
+    Aggregate bar = make_block(12, 3, 3, kA, kSoft);
+    if (kind == Kind::half) {
+        bar = make_block(6, 3, 3, kA, kSoft);
+        for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+            bar.particle_position.x[p] += (3 + cut) * kA;
+        }
+    }
+    if (kind == Kind::cut) sever_plane(bar, Vec3(cut * kA, 0, 0), Vec3(1, -lean, 0).normalized());
+    const auto from_cut = [&](const Vec3& x) { return x.x() - cut * kA - lean * x.y(); };
+    Apparatus apparatus;
+    for (const bool draws : {true, false}) {
+        Grip grip;
+        grip.name = draws ? "draw" : "hold";
+        for (std::size_t p = 0; p < bar.surface.size(); ++p) {
+            const Vec3 x = bar.surface_position(p);
+            const double low = std::max(from_cut(x) - 0.25 * kA, 0.0),
+                         high = std::min(from_cut(x) + 0.25 * kA, wide * kA);
+            const bool is_in = draws ? high > low && std::abs(bar.surface.normal(p).x()) < 0.5
+                                     : x.x() > (5.9 + (kind == Kind::half ? cut : 0)) * kA;
+            if (!is_in) continue;
+            grip.point.push_back(static_cast<int>(p));
+            grip.share.push_back(draws ? (high - low) / (0.5 * kA) : 1);
+            grip.anchor.push_back(x);
+        }
+        apparatus.grip.push_back(grip);
+    }
+    SimSettings settings;
+    settings.self_contact = false;
+    const Drive from = drive_of(apparatus, 0, 1);
+    Drive to = drive_of(apparatus, 1, 1);
+    to.world_from_grip[0].translation.x() = -0.1 * kA;
+    Simulation simulation(bar, apparatus, settings);
+    return simulation.advance(from, to).load[0].force.norm();
+}
+
 }  // namespace
 
 TEST_CASE("beside a cut a narrow tool bears about as much as on a body that ends there") {
@@ -68,6 +109,72 @@ TEST_CASE("beside a cut a narrow tool bears about as much as on a body that ends
         CHECK(beside > 0.5 * whole);
         CHECK(beside < whole);
     }
+}
+
+TEST_CASE("a grip beside a cut draws about as hard as on a body that ends there") {
+    for (const double cut : {0.2, 0.4, 0.6}) {
+        for (const double wide : {0.4, 0.8}) {
+            CAPTURE(cut, wide);
+            const double half = grip_force(Kind::half, cut, 0, wide);
+            const double beside = grip_force(Kind::cut, cut, 0, wide);
+            CHECK(beside > 0.65 * half);
+            CHECK(beside < 1.2 * half);
+        }
+    }
+}
+
+TEST_CASE("a grip that ends at a cut holds one side alone, and goes on so from a checkpoint") {
+    const double cut = GENERATE(0.01, 0.03, 0.06, 0.08);
+    Aggregate bar = make_block(6, 3, 3, kA, kSoft);
+    Apparatus apparatus;
+    Grip grip = hold(bar, points_where(bar, [&](const Vec3& x) {
+                         return std::abs(x.y()) > 0.1499 && x.x() > cut - 0.0249;
+                     }));
+    for (int p : grip.point) {
+        const double x = bar.surface_reference(std::size_t(p)).x();
+        grip.share.push_back(std::min(1.0, (x + 0.025 - cut) / 0.05));
+    }
+    apparatus.grip.push_back(grip);
+    GripSet grips(bar, apparatus, {}, 0);
+    sever_plane(bar, Vec3(cut, 0, 0), Vec3::UnitX());
+    grips.connections_changed(bar);
+    const Pieces pieces = find_pieces(bar);
+    const GrippedPieces gripped = find_gripped_pieces(bar, apparatus);
+    CHECK(std::ranges::count(gripped.by, GrippedPieces::kNone) == 1);
+    // Each side goes its own way.
+    deform(bar, [&](const Vec3& x) { return Vec3(x + Vec3(x.x() < cut ? -0.01 : 0.002, 0, 0)); });
+    const Drive now = drive_of(apparatus, 0, 1);
+    const auto borne = [&](const GripSet& by) {
+        Vec3Array force;
+        force.resize(bar.particle_count());
+        by.add_forces(bar, now, force);
+        return force;
+    };
+    const Vec3Array force = borne(grips);
+    double held = 0;
+    for (std::size_t p = 0; p < force.size(); ++p) {
+        if (pieces.particle_piece[p] == pieces.particle_piece[0]) {
+            CHECK(force.at(p).norm() == 0);
+        } else {
+            held -= force.at(p).x();
+        }
+    }
+    double whole = 0;  // of the patches on that side and what the edge leaves of them
+    for (std::size_t n = 0; n < grip.point.size(); ++n) {
+        const double x = bar.surface_reference(std::size_t(grip.point[n])).x();
+        if (x > cut) whole += grip.share[n] * grip.share[n];
+    }
+    const SurfaceLayer layer(bar, bar.surface, Solver::quasistatic);
+    whole *= 0.002 * layer.stiffness(bar.surface, 0, SimSettings{}.grip_stiffness);
+    CHECK(held == Approx(whole));
+    ByteWriter out;
+    out(grips);
+    const std::string& bytes = out.bytes();
+    GripSet again(make_block(6, 3, 3, kA, kSoft), apparatus, {}, 0);
+    ByteReader in(bytes);
+    in(again);
+    const Vec3Array after = borne(again);
+    CHECK(after.x == force.x);
 }
 
 namespace {

@@ -183,8 +183,8 @@ TEST_CASE("what is cut under a grip pulls no more at what it was cut from") {
         Aggregate matter = make_block(10, 3, 3, 0.1, kSoft);
         Apparatus apparatus;
         apparatus.name = "draw";
-        // The right one reaches half a cell and more beyond the cut.
-        apparatus.grip = end_grips(matter, 0.31);
+        // The right one reaches up to the cut, half-way through a cell.
+        apparatus.grip = end_grips(matter, 0.36);
         SimSettings settings;
         settings.solver = solver;
         const Vec3 cut(0.353, 0, 0);
@@ -260,8 +260,8 @@ TEST_CASE("what is cut off under a grip is carried along no more, and would fall
         Aggregate matter = make_block(10, 3, 3, 0.1, kSoft);
         Apparatus apparatus;
         apparatus.name = "draw";
-        // It reaches half a cell and more beyond the cut.
-        apparatus.grip.push_back(end_grips(matter, 0.31)[1]);
+        // It reaches up to the cut, half-way through a cell.
+        apparatus.grip.push_back(end_grips(matter, 0.36)[1]);
         sever_plane(matter, Vec3(0.353, 0, 0), Vec3::UnitX());
         SimSettings settings;
         settings.gravity = {0, -gravity, 0};
