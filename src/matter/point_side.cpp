@@ -155,6 +155,12 @@ PointCarriage carriage_on_piece(const Aggregate& matter, std::size_t point, cons
     return carriage_by(matter, point, both != 0 ? both : of_piece != 0 ? of_piece : side);
 }
 
+int piece_of(const PointCarriage& carriage, const Pieces& pieces) {
+    const SurfacePoints::Carriers by = carriage.carriers();
+    const int corner = heaviest_corner(by.weight, carriage.corners);
+    return pieces.particle_piece[std::size_t(by.corner[std::size_t(corner)])];
+}
+
 void keep_sides(Aggregate& matter, std::vector<PointSide>& sides) {
     std::erase_if(sides, [&](const PointSide& one) {
         const auto point = static_cast<std::size_t>(one.point);

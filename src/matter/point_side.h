@@ -43,6 +43,10 @@ inline void carry(SurfacePoints& points, std::size_t point, const PointCarriage&
     points.set(point, by.row, by.place, points.area(point), points.normal(point));
 }
 
+// The piece that carries a point. Its cell may have corners on others too, none of which weighs
+// anything.
+int piece_of(const PointCarriage& carriage, const Pieces& pieces);
+
 // The corners of a point's cell on its side of a surface that parts that.
 struct PointSide {
     using IsPlain = PointSide;

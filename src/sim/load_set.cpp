@@ -105,7 +105,7 @@ void LoadSet::connections_changed(const Aggregate& matter) {
         std::vector<OpenFace> open;
         if (presses) parted.pieces = find_pieces(matter), open = laid_open(matter);
         for (const Load& load : apparatus_->load) {
-            parted.face.push_back(pressed(load, matter.surface, parted.pieces, open));
+            parted.face.push_back(pressed(load, matter, parted.pieces, open));
         }
         parted_ = std::make_shared<const Parted>(std::move(parted));
     }
@@ -140,16 +140,18 @@ Vec3 LoadSet::area_vector(const Load& load, std::size_t n, const Aggregate& matt
                                 matter.surface.area(point) * matter.surface.normal(point));
 }
 
-std::vector<OpenFace> LoadSet::pressed(const Load& load, const SurfacePoints& surface,
+std::vector<OpenFace> LoadSet::pressed(const Load& load, const Aggregate& matter,
                                        const Pieces& pieces,
                                        const std::vector<OpenFace>& open) const {
     std::vector<OpenFace> faces;
     if (!pushes(load) || !load.closed || !load.force.empty()) return faces;
-    std::vector<char> is_pressed(surface.size(), 0);
+    std::vector<char> is_pressed(matter.surface.size(), 0);
     for (int p : load.point) is_pressed[std::size_t(p)] = 1;
     std::vector<char> all_round(std::size_t(pieces.count), 1);
-    for (std::size_t p = 0; p < surface.size(); ++p) {
-        if (!is_pressed[p]) all_round[pieces.particle_piece[surface.row(p)[0]]] = 0;
+    for (std::size_t p = 0; p < is_pressed.size(); ++p) {
+        if (!is_pressed[p]) {
+            all_round[std::size_t(piece_of(carriage_on_side(matter, p), pieces))] = 0;
+        }
     }
     for (const OpenFace& face : open) {
         if (all_round[pieces.particle_piece[face.corner[0]]]) faces.push_back(face);

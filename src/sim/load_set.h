@@ -101,8 +101,8 @@ class LoadSet {
     // Those laid open on pieces that it presses on all round. Wherever a load's points are listed
     // they follow these.
     std::span<const OpenFace> faces_of(const Load& load) const;
-    std::vector<OpenFace> pressed(const Load& load, const SurfacePoints& surface,
-                                  const Pieces& pieces, const std::vector<OpenFace>& open) const;
+    std::vector<OpenFace> pressed(const Load& load, const Aggregate& matter, const Pieces& pieces,
+                                  const std::vector<OpenFace>& open) const;
 
     // On each point of a load [N].
     std::vector<Vec3> forces_of(const Load& load, double strength, const Aggregate& matter) const;

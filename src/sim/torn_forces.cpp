@@ -2,7 +2,6 @@
 #include "sim/torn_forces.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "base/parallel.h"
 #include "matter/parted.h"
@@ -14,11 +13,6 @@ namespace {
 constexpr std::size_t kChunk = 1024;
 constexpr double kNear = 2;      // spacings, as molded
 constexpr double kHalf = 0.501;  // of a patch, and what rounding adds
-
-int piece_of(const Pieces& pieces, const PointCarriage& by) {
-    const int corner = std::countr_zero(by.corners);
-    return pieces.particle_piece[std::size_t(corner_particle(by.row, corner))];
-}
 
 // NOTE: a box that ends at a cut may leave less than half of a patch, whose middle then lies beyond
 // both: that part is on the side of the patches next to it. Calls act(n, pieces, piece) for each,
@@ -42,7 +36,7 @@ void for_each_rest(const SurfacePart& part, const Aggregate& matter,
         }
         if (next == n) continue;
         if (pieces.count == 0) pieces = find_pieces(matter);
-        act(n, pieces, piece_of(pieces, bearer[next]));
+        act(n, pieces, piece_of(bearer[next], pieces));
     }
 }
 
@@ -88,13 +82,13 @@ void go_to_patches_near(const Load& load, const Aggregate& matter, const std::ve
     };
     for (std::size_t n = 0; n < bearer.size(); ++n) {
         if (!is_left_over(bearer[n])) continue;
-        const int on = piece_of(pieces, bearer[n]);
+        const int on = piece_of(bearer[n], pieces);
         const Vec3 at = place(n);
         double nearest = kNear * matter.lattice.spacing;
         for (std::size_t m = 0; m < bearer.size(); ++m) {
-            if (torn[m] || piece_of(pieces, bearer[m]) != on) continue;
-            const double far = (place(m) - at).norm();
-            if (far < nearest) nearest = far, bearer[n] = bearer[m];
+            const double far = torn[m] ? nearest : (place(m) - at).norm();
+            if (far >= nearest || piece_of(bearer[m], pieces) != on) continue;
+            nearest = far, bearer[n] = bearer[m];
         }
     }
 }
@@ -122,7 +116,7 @@ std::vector<PointCarriage> holders(const Grip& grip, const Aggregate& matter) {
     if (torn.empty()) return {};
     std::vector<PointCarriage> holder = on_sides(grip, matter, torn);
     for_each_rest(grip, matter, torn, holder, [&](std::size_t n, const Pieces& pieces, int piece) {
-        if (piece_of(pieces, holder[n]) != piece) holder[n].is_whole = false;
+        if (piece_of(holder[n], pieces) != piece) holder[n].is_whole = false;
     });
     return holder;
 }

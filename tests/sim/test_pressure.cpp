@@ -113,6 +113,43 @@ TEST_CASE("pressure all round drives no piece and turns none, whatever has parte
     }
 }
 
+TEST_CASE("pressure all round what is cut off presses the cut, whichever end it is of") {
+    constexpr double kPressure = 1e3, kCut = 0.26;  // beside the cavity, in the cells that hold it
+    for (const int axis : {0, 1, 2}) {
+        Vec3 half = Vec3::Constant(0.31);
+        half[axis] = 0.61;
+        const auto distance = [&](const Vec3& x) {
+            return std::max((x.cwiseAbs() - half).maxCoeff(), 0.23 - x.norm());
+        };
+        Vec3i count = Vec3i::Constant(8);
+        count[axis] = 14;
+        const Aggregate hollow = make_shape(distance, -0.05 * count.cast<double>(), count, 0.1);
+        for (const double end : {-1, 1}) {
+            CAPTURE(axis, end);
+            Aggregate matter = hollow;
+            Apparatus apparatus;
+            Load& load = apparatus.load.emplace_back(pressure_on(matter, kPressure));
+            std::erase_if(load.point, [&](int p) {
+                return matter.surface_reference(std::size_t(p)).norm() < 0.27;
+            });
+            const Vec3 normal = end * Vec3::Unit(axis);
+            sever_plane(matter, kCut * normal, normal);
+            REQUIRE(find_pieces(matter).count == 2);
+            LoadSet loads(apparatus, {});
+            loads.connections_changed(matter);
+            Vec3Array force;
+            force.resize(matter.particle_count());
+            loads.add_forces(matter, drive_of(apparatus, 1, 1), force);
+            double away = 0;  // from the rest
+            for (std::size_t p = 0; p < force.size(); ++p) {
+                const double far = normal.dot(matter.particle_reference.at(p));
+                if (far > kCut) away += std::max(normal.dot(force.at(p)), 0.0);
+            }
+            CHECK(away == Approx(kPressure * 0.62 * 0.62).epsilon(0.1));
+        }
+    }
+}
+
 TEST_CASE("a body that is cut under pressure all round stays as it is pressed") {
     const auto pressed = [](bool is_cut) {
         Aggregate matter = make_block(6, 4, 4, 0.1, kSoft);

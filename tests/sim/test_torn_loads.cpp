@@ -126,6 +126,83 @@ TEST_CASE("a box that ends at a cut loads one side alone, however little it leav
     }
 }
 
+TEST_CASE(
+    "beside a slanted cut a force and a pressure load their side alone, whichever way round") {
+    constexpr double kCell = 0.1, kPatch = kCell / 2, kTop = 0.25;
+    const double offset = GENERATE(-0.0282, 0.011, 0.037, 0.061, 0.093);
+    const double tilt = GENERATE(-0.7, -0.4, -0.2, 0.2, 0.4, 0.7);
+    const bool is_mirrored = GENERATE(false, true), is_upside_down = GENERATE(false, true);
+    const bool presses = GENERATE(false, true);
+    CAPTURE(offset, tilt, is_mirrored, is_upside_down, presses);
+    const Vec3 flip(is_mirrored ? -1 : 1, is_upside_down ? -1 : 1, 1);
+    Aggregate matter = make_block(8, 5, 3, kCell, kSoft);
+    const Vec3 normal = flip.cwiseProduct(Vec3(std::cos(tilt), std::sin(tilt), 0));
+    const double from = offset - kTop * std::tan(tilt) + 0.0115, to = from + 0.0725;
+    Apparatus apparatus;
+    std::vector<double> share;
+    const std::vector<int> pushed = points_where(matter, [&](const Vec3& x) {
+        const Vec3 at = flip.cwiseProduct(x);
+        if (at.y() < kTop - 1e-6) return false;
+        const double low = std::max(from, at.x() - kPatch / 2);
+        const double high = std::min(to, at.x() + kPatch / 2);
+        if (high < low + 1e-6) return false;
+        share.push_back((high - low) / kPatch);
+        return true;
+    });
+    Load& load = apparatus.load.emplace_back(force_on(matter, pushed, kPush));
+    load.share = share;
+    Vec3 all = Vec3::Zero();
+    const Vec3 press = Vec3(0, is_upside_down ? 100 : -100, 0);
+    for (std::size_t n = 0; n < pushed.size(); ++n) {
+        load.force[n] = share[n] * kPush;
+        all += presses ? Vec3(share[n] * kPatch * kPatch * press) : load.force[n];
+    }
+    if (presses) load.force.clear(), load.pressure = 100;
+    LoadSet loads(apparatus, {});
+    sever_plane(matter, flip.cwiseProduct(Vec3(offset, 0, 0)), normal);
+    loads.connections_changed(matter);
+    const std::array<Vec3, 2> side = borne(matter, loads, drive_of(apparatus, 1, 1));
+    CHECK(side[is_mirrored].norm() < 1e-9 * all.norm());
+    CHECK((side[!is_mirrored] - all).norm() < 1e-6 * all.norm());
+}
+
+TEST_CASE(
+    "of a force across slanted cuts a slice so thin that no cell of it is whole bears its own") {
+    constexpr double kCell = 0.1, kTop = 0.25;
+    const double offset = GENERATE(-0.03, 0.011, 0.037, 0.061);
+    const double width = GENERATE(0.09, 0.12, 0.14, 0.17, 0.2);
+    const double tilt = GENERATE(-0.7, -0.4, -0.2, 0.2, 0.4, 0.7);
+    const bool is_mirrored = GENERATE(false, true), is_upside_down = GENERATE(false, true);
+    CAPTURE(offset, width, tilt, is_mirrored, is_upside_down);
+    const Vec3 flip(is_mirrored ? -1 : 1, is_upside_down ? -1 : 1, 1);
+    Aggregate matter = make_block(8, 5, 3, kCell, kSoft);
+    const Vec3 normal = flip.cwiseProduct(Vec3(std::cos(tilt), std::sin(tilt), 0));
+    Apparatus apparatus;
+    const auto is_above = [&](const Vec3& x) { return flip.y() * x.y() > kTop - 1e-6; };
+    const Load& load =
+        apparatus.load.emplace_back(force_on(matter, points_where(matter, is_above), kPush));
+    LoadSet loads(apparatus, {});
+    for (const double x : {offset, offset + width}) {
+        sever_plane(matter, flip.cwiseProduct(Vec3(x, 0, 0)), normal);
+    }
+    loads.connections_changed(matter);
+    const auto is_slice = [&](const Vec3& x) {
+        const double far = normal.dot(x - flip.cwiseProduct(Vec3(offset, 0, 0)));
+        return far > 0 && far < width * std::cos(tilt);
+    };
+    Vec3Array force;
+    force.resize(matter.particle_count());
+    loads.add_forces(matter, drive_of(apparatus, 1, 1), force);
+    Vec3 sum = Vec3::Zero(), own = Vec3::Zero();
+    for (std::size_t n = 0; n < load.point.size(); ++n) {
+        if (is_slice(matter.surface_reference(std::size_t(load.point[n])))) own += load.force[n];
+    }
+    for (std::size_t p = 0; p < force.size(); ++p) {
+        if (is_slice(matter.particle_reference.at(p))) sum += force.at(p);
+    }
+    CHECK((sum - own).norm() < 1e-6 * kPush.norm());
+}
+
 TEST_CASE("a pressure presses a side of a cut up to the cut, and not the other") {
     for (const double cut : {0.02, 0.05, 0.08}) {
         CAPTURE(cut);
