@@ -24,7 +24,7 @@ constexpr int kLooks = 256;     // at a motion
 constexpr double kJump = 0.25;  // spacings, in no time
 constexpr double kNoTime = 1e-12;
 constexpr double kTurns = 1e-8;  // [rad]
-constexpr float kFull = 0.99f;  // share of a cell
+constexpr float kFull = 0.99f;   // share of a cell
 
 std::string length_of(double value) { return quantity_text(value, Quantity::length); }
 
@@ -108,7 +108,7 @@ bool only_blades_move(const MachineSpec& spec) {
 // Of a blade whose edge stays beside the work-piece's box all its way.
 std::string miss_note(const Machine& machine, std::size_t n, const std::vector<Pose>& way,
                       double slack) {
-    if (way.empty() || machine.spec.blade[n].motion.stands()) return "";
+    if (way.empty() || blade_stands(machine, n)) return "";
     const Blade& blade = machine.apparatus.blade[n];
     const Vec3 half = (0.5 * machine.frame.size).array() + slack;
     double nearest = std::numeric_limits<double>::infinity();
@@ -224,6 +224,16 @@ std::vector<std::string> nothing_notes(const Machine& machine) {
 
 }  // namespace
 
+bool blade_stands(const Machine& machine, std::size_t n) {
+    const std::vector<Pose> way = way_of(machine.blade_motion[n]);
+    if (way.empty()) return false;
+    const Blade& blade = machine.apparatus.blade[n];
+    return std::ranges::all_of(blade.edge, [&](const Vec3& point) {
+        const Vec3 at = machine.work_from_blade[n] * point, start = way.front() * at;
+        return std::ranges::all_of(way, [&](const Pose& pose) { return pose * at == start; });
+    });
+}
+
 std::vector<std::string> start_notes(const Machine& machine, const Aggregate& matter,
                                      const std::vector<Vec3>& touch, double spacing) {
     std::vector<std::string> notes;
@@ -254,6 +264,12 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
         }
     };
     const Apparatus& apparatus = machine.apparatus;
+    for (std::size_t n = 0; n < apparatus.blade.size(); ++n) {
+        if (!blade_stands(machine, n)) continue;
+        note(fmt::format(
+            "blade {} stands still: blades cut only by their own motion, and it will cut nothing",
+            apparatus.blade[n].name));
+    }
     for (std::size_t n = 0; only_blades_move(machine.spec) && n < apparatus.blade.size(); ++n) {
         note(miss_note(machine, n, way_of(machine.blade_motion[n]), spacing));
     }

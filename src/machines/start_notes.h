@@ -9,6 +9,9 @@
 
 namespace swage {
 
+// Whether the n-th blade is where it starts at all times, whatever its motion is written like.
+bool blade_stands(const Machine& machine, std::size_t n);
+
 // `touch`: what of the work-piece meets tools, in the work frame [m]. `spacing`: that is asked for;
 // the matter may be of a larger one [m].
 std::vector<std::string> start_notes(const Machine& machine, const Aggregate& matter,

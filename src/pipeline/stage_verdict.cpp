@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "machines/start_notes.h"
 #include "pipeline/books_verdict.h"
 #include "sim/cell_volume.h"
 #include "sim/flowed_volume.h"
@@ -144,6 +145,15 @@ std::string inside_out(const StageEnd& end, const WorkPiece& piece) {
 
 // Why no blade has severed anything: what goes through a cell may pass between its particles.
 std::string why_nothing_is_cut(const StageEnd& end) {
+    std::size_t standing = 0;
+    const std::size_t blades = end.machine.apparatus.blade.size();
+    for (std::size_t n = 0; n < blades; ++n) standing += blade_stands(end.machine, n);
+    if (standing == blades) {
+        return fmt::format(
+            "blades cut only by their own motion, and {}: what moves against {} is not cut",
+            blades == 1 ? "this one stands still" : "these stand still",
+            blades == 1 ? "it" : "them");
+    }
     if (end.totals.entered == 0) {
         return "the blade met no matter: it passed beside the work-piece or through a gap in it";
     }

@@ -54,6 +54,25 @@ TEST_CASE("a blade that passes between the particles of a cell is not said to ha
     CHECK(!says(told(""), "severed nothing"));
 }
 
+TEST_CASE("of a blade that stands while a body flies through it that is said, not that it missed") {
+    const Scratch scratch;
+    fs::create_directory(scratch.path() / "machines");
+    put_text(scratch.path() / "machines/edge.toml",
+             "help = \"a blade that stands\"\n[[blade]]\nname = \"blade\"\n"
+             "edge = [[\"0.6*length\", \"height\", 0], [\"0.6*length\", \"-height\", 0]]\n");
+    swage::write_obj(scratch.path() / "body.obj", kBar);
+    put_text(scratch.path() / "scene.toml",
+             "[mesh]\nfile = \"body.obj\"\nvelocity = [2, 0, 0]\n[material]\nname = \"rubber\"\n"
+             "[mold]\nacross = 2\n[[stage]]\nmachine = \"edge\"\nframes = 2\n"
+             "solver = \"explicit\"\nduration = \"50 ms\"\n");
+    const Outcome outcome =
+        run_swage({"run", "scene.toml", "--out", "run", "--no-render"}, scratch.path());
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(says(outcome.err, "blades cut only by their own motion, and this one stands still"));
+    CHECK(!says(outcome.err, "met no matter"));
+}
+
 TEST_CASE("a blade is said to have gone into what was there when it passed, not what came later") {
     // It falls beyond the bar's end; then the bar is drawn to where it was.
     const auto told = [&](const char* place) {

@@ -148,6 +148,11 @@ TEST_CASE("a blade that passes beside the work-piece all its way is noted, one t
     lift.motion.move = {"0", "height*t", "0"};
     spec.tool = {lift};
     CHECK(notes({"0", "-1.5*height*t", "0"}).empty());
+    // One that stands cuts nothing, whatever is brought to it.
+    for (const char* still : {"0", "0*height*t"}) {
+        CHECK(tells(notes({"0", still, "0"}),
+                    "blade knife stands still: blades cut only by their own motion"));
+    }
 }
 
 namespace {
