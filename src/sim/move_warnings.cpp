@@ -90,7 +90,7 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
                         counted(static_cast<std::size_t>(outcome.inside_out), "cell", "cells")));
     }
     if (outcome.buckled) {
-        warning.emplace_back("the work-piece buckled: it changed to a shape that bears less");
+        warning.emplace_back("the work-piece buckled: it changed to another shape");
     }
     return warning;
 }

@@ -87,7 +87,7 @@ class Strut {
         borne_ = apparatus_.load.empty() ? std::abs(report.load[last].force.x()) : force;
         borne_share = borne_ / force;
         return std::ranges::any_of(report.warning, [](const std::string& line) {
-            return line.find("buckled") != std::string::npos;
+            return line == "the work-piece buckled: it changed to another shape";
         });
     }
     void begin() { simulation_.emplace(matter_, apparatus_, SimSettings{}); }
