@@ -20,4 +20,17 @@ bool cell_has_broken(const Aggregate& matter, CellId cell, const std::array<Part
            });
 }
 
+bool closes_as_crack(const Aggregate& matter, const std::array<ParticleId, 4>& row, int axis) {
+    bool broken = false;
+    for (const CellConnection& c : kCellConnection) {
+        const ConnectionArrays& all = matter.connection[c.direction];
+        const ParticleId lower = corner_particle(row, c.corner);
+        if (all.weight[lower] > 0) continue;
+        const bool by_load = !all.damage.empty() && all.damage[lower] >= 1;
+        if (!by_load && c.direction == axis) return false;  // kForward begins with the edges
+        broken = broken || by_load;
+    }
+    return broken;
+}
+
 }  // namespace swage

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "matter/broken_cells.h"
 
 namespace swage {
 
@@ -158,7 +159,10 @@ void ContactSide::find_cells() {
     for (std::size_t p = 0; p < taken.size(); ++p) {
         if (taken[p]) skin_.push_back(static_cast<ParticleId>(p));
     }
-    if (itself_) find_near();
+    if (itself_) {
+        find_near();
+        find_cracks();
+    }
 }
 
 RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
@@ -227,6 +231,34 @@ void ContactSide::forget_near() {
     near_whole_.clear();
 }
 
+void ContactSide::find_cracks() {
+    is_crack_.assign(touch_.size() - touch_.own(), 0);
+    for (std::size_t n = 0; n < is_crack_.size(); ++n) {
+        const int point = static_cast<int>(touch_.own() + n);
+        is_crack_[n] = touch_.meets(point) && looks_into_crack(point);
+    }
+}
+
+// Of a face, into the cell beyond it, in whose middle its point lies at rest; a particle by itself
+// into all cells that it is a corner of.
+bool ContactSide::looks_into_crack(int point) const {
+    const Lattice& lattice = matter_->lattice;
+    if (!touch_.is_loose(point)) {
+        const Vec3i site = own_place(point).array().floor().cast<int>();
+        int axis = 0;
+        (site - touch_.home()[std::size_t(point)]).cwiseAbs().maxCoeff(&axis);
+        return closes_as_crack(*matter_, lattice.cell_row(lattice.cell_at(site)), axis);
+    }
+    const Vec3i site = own_place(point).array().round().cast<int>();
+    for (int corner = 0; corner < 8; ++corner) {
+        const CellId cell = lattice.cell_at(site - Vec3i(corner & 1, corner >> 1 & 1, corner >> 2));
+        for (int axis = 0; axis < 3 && cell >= 0; ++axis) {
+            if (!closes_as_crack(*matter_, lattice.cell_row(cell), axis)) return false;
+        }
+    }
+    return true;
+}
+
 bool ContactSide::is_neighbour(int point, const Vec3i& site) const {
     if (near_set_[point] < 0) return false;
     const Vec3i at = site - touch_.home()[point];
@@ -251,7 +283,7 @@ ContactSide::OwnShare ContactSide::own_share(int point, const Vec3i& site,
     if (far < kAll && is_neighbour(point, site)) return from(kNone, kAll);
     // Faces of a crack that loads have broken, not yet apart: a closed crack is the fracture law's.
     const bool is_face = static_cast<std::size_t>(point) >= touch_.own();
-    if (is_face && far < kApart && !matter_->connection[0].damage.empty()) {
+    if (is_face && far < kApart && is_crack_[std::size_t(point) - touch_.own()]) {
         return from(kClosed, kApart);
     }
     return {1, Vec3::Zero()};

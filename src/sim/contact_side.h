@@ -93,6 +93,8 @@ class ContactSide {
     void find_cells();
     void find_near();
     void forget_near();  // points are others, not only more
+    void find_cracks();
+    bool looks_into_crack(int point) const;
     Vec3 own_place(int point) const { return own_place_[point].cast<double>(); }
 
     Aggregate* matter_;
@@ -111,6 +113,9 @@ class ContactSide {
     std::vector<std::array<std::uint64_t, 12>> near_;
     std::vector<Vec3i> set_home_;
     std::vector<char> near_whole_;  // TouchPoints::whole() that they were found with; empty: none
+    // Of each point of new surface whether it looks into a crack that presses by itself while it is
+    // shut (closes_as_crack()), and not into a cut.
+    std::vector<char> is_crack_;
 };
 
 }  // namespace swage

@@ -114,6 +114,46 @@ TEST_CASE("pieces after a cut do not pass through each other") {
     }
 }
 
+TEST_CASE("pieces after a cut do not pass through each other either where one has cracked") {
+    std::vector<double> nearest;
+    for (const bool cracks : {false, true}) {
+        Aggregate block = make_block(5, 8, 5, 0.1, soft());
+        sever_plane(block, Vec3(0, 0.05, 0), Vec3::UnitY());
+        if (cracks) {  // one edge at its top
+            for (ConnectionArrays& all : block.connection) all.damage.resize(all.weight.size());
+            const ParticleId last = static_cast<ParticleId>(block.particle_count()) - 2;
+            block.connection[0].weight.set(last, 0);
+            block.connection[0].damage[last] = 1;
+        }
+        SimSettings settings = motion_settings();
+        settings.self_contact = true;
+        for (std::size_t p = 0; p < block.particle_count(); ++p) {
+            if (block.particle_reference.at(p).y() > 0.05) {
+                block.particle_velocity.set(p, Vec3(0, -1, 0));
+            }
+        }
+        const Apparatus nothing;
+        Simulation simulation(block, nothing, settings);
+        double least = 1;
+        for (int f = 0; f < 20; ++f) {
+            simulation.advance(still(0.004 * f), still(0.004 * (f + 1)));
+            double gap = 0;  // of the particles beside the cut
+            int count = 0;
+            for (std::size_t p = 0; p < block.particle_count(); ++p) {
+                const double y = block.particle_reference.at(p).y() - 0.05;
+                if (std::abs(y) > 0.06) continue;
+                gap += (y > 0 ? 1 : -1) * block.particle_position.y[p];
+                count += y > 0;
+            }
+            least = std::min(least, gap / count);
+        }
+        nearest.push_back(least);
+    }
+    INFO("sound " << nearest[0] << ", cracked " << nearest[1]);
+    CHECK(nearest[0] > 0.03);
+    CHECK(nearest[1] == Approx(nearest[0]).epsilon(0.02));
+}
+
 TEST_CASE("what is connected to a point is the same, told break by break or all at once") {
     const Aggregate sound = make_block(30, 6, 12, 0.05, soft());
     Aggregate block = sound;

@@ -55,6 +55,22 @@ struct Pressed {
     std::uint64_t hash = 0;
 };
 
+// What sever_plane() would sever, load has broken.
+void break_plane(Aggregate& m, const Vec3& point, const std::function<bool(const Vec3&)>& where) {
+    const Aggregate sound = m;
+    sever_plane(m, point, Vec3::UnitY(), where);
+    for (std::size_t d = 0; d < m.connection.size(); ++d) {
+        ConnectionArrays& all = m.connection[d];
+        all.damage.resize(all.weight.size(), 0.0f);
+        for (std::size_t p = 0; p < all.weight.size(); ++p) {
+            if (sound.connection[d].weight[p] > 0 && !(all.weight[p] > 0)) all.damage[p] = 1;
+        }
+    }
+}
+
+bool anywhere(const Vec3&) { return true; }
+bool at_its_rim(const Vec3& x) { return x.x() > 0.1; }
+
 // Between plates much larger than itself, by `down` of its height in so many frames.
 Pressed press(Aggregate& body, double height, double down, int frames,
               const SimSettings& settings) {
@@ -147,6 +163,45 @@ TEST_CASE("what a blade has parted is met by its faces, half a cell before what 
         }
         CHECK(own_overlap(bar) == Approx(std::max(by, 0.0)).margin(1e-9));
     }
+}
+
+TEST_CASE("a cut body that cracks elsewhere still meets itself in the cut") {
+    const Vec3 cut(0, 0.05, 0), crack(0, 0.25, 0);
+    const auto pressed = [&](bool cracks, bool meets) {
+        Aggregate bar = make_block(5, 8, 5, 0.1, soft());
+        sever_plane(bar, cut, Vec3::UnitY());
+        if (cracks) break_plane(bar, crack, at_its_rim);
+        return press(bar, 0.8, 0.1, 5, settings_of(meets));
+    };
+    const Pressed sound = pressed(false, true), cracked = pressed(true, true),
+                  ghost = pressed(true, false);
+    for (std::size_t n = 0; n < 5; ++n) {
+        CHECK(cracked.force[n] > 0.9 * sound.force[n]);
+        CHECK(cracked.force[n] < 1.01 * sound.force[n]);
+        CHECK(ghost.force[n] < 1);
+    }
+    CHECK(std::abs(cracked.last.remainder) < 3e-3 * cracked.last.work);
+}
+
+TEST_CASE("whether faces meet while they are shut is told for each of them") {
+    const Vec3 low(0, -0.25, 0), high(0, 0.25, 0);
+    const auto overlap = [&](bool is_cut, double low_by, double high_by) {
+        Aggregate bar = make_block(5, 8, 5, 0.1, soft());
+        if (is_cut) sever_plane(bar, low, Vec3::UnitY());
+        if (!is_cut) break_plane(bar, low, anywhere);
+        break_plane(bar, high, anywhere);
+        for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+            const double y = bar.particle_reference.at(p).y();
+            if (y < low.y()) bar.particle_position.y[p] += low_by;
+            if (y > high.y()) bar.particle_position.y[p] -= high_by;
+        }
+        return own_overlap(bar);
+    };
+    // A crack presses by itself while it is shut, a cut does not.
+    CHECK(overlap(false, 0.04, 0.04) == 0);
+    CHECK(overlap(true, 0, 0.04) == Approx(0).margin(1e-9));
+    CHECK(overlap(true, 0.04, 0) == Approx(0.04).margin(1e-9));
+    CHECK(overlap(true, 0.02, 0.04) == Approx(0.02).margin(1e-9));
 }
 
 TEST_CASE("forces of a body on itself are the slope of their energy, and in balance") {
