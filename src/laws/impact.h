@@ -180,7 +180,8 @@ SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& a
     const double push = elastic + c * (approach - m * elastic) / (1 + c * m);
     const double N = result.normal = std::max(push, -law.hold);
 
-    const Vec3 reach = at.reach - at.normal * at.normal.dot(at.reach);
+    Vec3 reach = Vec3::Zero();  // without friction it sticks nowhere
+    if (law.holding > 0) reach = at.reach - at.normal * at.normal.dot(at.reach);
     const Vec3 across = at.velocity + approach * at.normal;
     Vec3 T = (k * reach - along * across) / (1 + along * m);
     const double size = T.norm(), bears = N + law.hold;

@@ -175,6 +175,30 @@ TEST_CASE("what springs hold, dashpots and friction take is what was put in") {
     }
 }
 
+TEST_CASE("without friction none takes anything, however far a point slides in a step") {
+    const ImpactLaw law = {.stiffness = 1e5,
+                           .restitution = 0.5,
+                           .loss = restitution_loss(0.5),
+                           .damping = restitution_damping(0.5),
+                           .friction = 0,
+                           .holding = 0,
+                           .hold = 0};
+    ImpactState at{.depth = 1e-3,
+                   .normal = Vec3::UnitY(),
+                   .now = Vec3(2, -0.1, 0.3),
+                   .velocity = Vec3(2, -0.1, 0.3),
+                   .reach = Vec3(-2.1e-4, 3e-5, -2.8e-5),  // about the step's way, back
+                   .give = 100,
+                   .step = 1e-4};
+    for (const double step : {1e-4, 0.0}) {
+        at.step = step;
+        const ImpactForce f = impact_force(law, at, {.speed = 1, .touches = true});
+        CHECK(f.friction == 0);
+        CHECK(f.reach.isZero(0));
+        CHECK(f.force.cross(at.normal).isZero(0));
+    }
+}
+
 TEST_CASE("a stone stays below the static limit, slides at the kinetic one, and rests again") {
     const double g = 10, k = 1e4;
     const auto pushed = [&](double pull) {
