@@ -3,18 +3,13 @@
 
 #include "geometry/triangle_tree.h"
 #include "matter/cell_middle.h"
+#include "sim/sever.h"
 
 namespace swage {
 
 bool enters_matter(const std::vector<std::array<Vec3, 3>>& swept, const Aggregate& matter) {
     constexpr float kWhole = 0.99f;  // of a cell
-    TriMesh mesh;
-    for (const std::array<Vec3, 3>& corner : swept) {
-        if ((corner[1] - corner[0]).cross(corner[2] - corner[0]).isZero(0)) continue;
-        const int first = static_cast<int>(mesh.position.size());
-        mesh.position.insert(mesh.position.end(), corner.begin(), corner.end());
-        mesh.triangle.push_back({first, first + 1, first + 2});
-    }
+    const TriMesh mesh = swept_mesh(swept);
     if (mesh.triangle.empty()) return false;
     const double reach = 0.5 * matter.lattice.spacing;
     const Box near = box_of(mesh.position).widened(reach);

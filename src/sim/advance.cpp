@@ -26,6 +26,9 @@ namespace swage {
 
 namespace {
 
+// Spacings that matter may have moved from the path of a blade that severs it as planned.
+constexpr double kBeside = 2;
+
 using AnySolver = std::variant<QuasistaticSolver, BlockSolver, EnergySteps>;
 
 AnySolver choose_solver(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
@@ -104,13 +107,20 @@ struct Simulation::Rooms {
         return std::visit([&](auto& any) { return any.connections_changed(b, now); }, solver);
     }
 
+    bool moves() const { return !std::holds_alternative<QuasistaticSolver>(solver); }
+
     std::vector<SeverEvent> crossed(const Aggregate& matter, std::span<const Drive> way) const {
         return crossed_connections(matter, swept_triangles(apparatus, way));
     }
 
     std::vector<LoadSum> load_sums(const Drive& now) const;
     std::vector<ToolLoad> loads(const Drive& now, const std::vector<LoadSum>& pushes) const;
-    int cut(std::size_t b, const Drive& from, const Drive& to);
+    struct Cut {
+        int severed = 0;
+        std::size_t missed = 0;  // of what was planned
+    };
+    Cut cut(std::size_t b, const Drive& from, const Drive& to);
+    std::size_t put_off(WorkedBody& at, std::vector<SeverEvent>& events) const;
     void count_pieces(std::size_t b, const char* who, std::vector<std::string>& warning);
     void book(const MoveOutcome& outcome, FrameReport& report);
 };
@@ -168,31 +178,49 @@ std::vector<ToolLoad> Simulation::Rooms::loads(const Drive& now,
     return loads;
 }
 
-// Cuts what the blades sweep on this way; returns the number of connections.
-int Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
+// What moves may have left the path that it was to be cut along, or be ahead of the blade there: it
+// waits until a blade has been beside it. Returns how many will not see that.
+std::size_t Simulation::Rooms::put_off(WorkedBody& at, std::vector<SeverEvent>& events) const {
+    const auto waits = std::stable_partition(events.begin(), events.end(),
+                                             [](const SeverEvent& e) { return e.met; });
+    const auto count = static_cast<std::size_t>(events.end() - waits);
+    if (!at.plan.empty()) at.plan.front().insert(at.plan.front().end(), waits, events.end());
+    events.erase(waits, events.end());
+    return at.plan.empty() ? count : 0;
+}
+
+// Cuts what the blades sweep on this way.
+Simulation::Rooms::Cut Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
     WorkedBody& at = body[b];
     std::vector<SeverEvent> events;
+    Cut cut;
     if (at.plan.empty()) {
         events = crossed(*at.matter, std::array{from, to});
-        if (events.empty()) return 0;
+        if (events.empty()) return {};
         name_blades(events, *at.matter, apparatus, std::array{from, to});
         at.sides = sides_of(*at.matter, events, swept_triangles(apparatus, std::array{from, to}));
     } else {
+        if (moves()) {
+            mark_met(at.plan, *at.matter, swept_triangles(apparatus, std::array{from, to}),
+                     kBeside * at.matter->lattice.spacing);
+        }
         events = std::move(at.plan.front());
         at.plan.pop_front();
         // A crack may have run ahead of the blade since.
         std::erase_if(events, [&](const SeverEvent& e) {
             return at.matter->connection[e.direction].weight[e.lower] <= 0;
         });
+        if (moves()) cut.missed = put_off(at, events);
     }
-    if (events.empty()) return 0;
+    if (events.empty()) return cut;
     const double before = elastic(b);
     sever(*at.matter, events);
     keep_sides(*at.matter, at.sides);
     for (const SeverEvent& e : events) ++severed[static_cast<std::size_t>(e.blade)];
     const double let_go = connections_changed(b, from);
     at.books.severed_energy += before - elastic(b) + let_go;
-    return static_cast<int>(events.size());
+    cut.severed = static_cast<int>(events.size());
+    return cut;
 }
 
 void Simulation::Rooms::count_pieces(std::size_t b, const char* who,
@@ -340,10 +368,19 @@ void FrameReport::go_on(FrameReport next) {
 FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveAt& way) {
     Rooms& r = *rooms_;
     FrameReport report;
+    std::size_t missed = 0;
     for (std::size_t b = 0; b < r.body.size(); ++b) {
-        const int severed = r.cut(b, from, to);
-        report.severed += severed;
-        if (severed > 0) r.count_pieces(b, "the blade", report.warning);
+        const auto cut = r.cut(b, from, to);
+        report.severed += cut.severed;
+        missed += cut.missed;
+        if (cut.severed > 0) r.count_pieces(b, "the blade", report.warning);
+    }
+    if (missed > 0) {
+        report.warning.push_back(fmt::format(
+            "{} connection{} that lay in the blade's path as it met the matter moved out of it and "
+            "stay{} whole, while the skin is cut there: move the blade faster, or hold what it "
+            "cuts",
+            missed, missed == 1 ? "" : "s", missed == 1 ? "s" : ""));
     }
 
     MoveOutcome outcome = std::visit(

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "geometry/box.h"
+#include "geometry/triangle_tree.h"
 
 namespace swage {
 
@@ -71,6 +72,17 @@ std::vector<Triangle> swept_triangles(const Apparatus& apparatus, std::span<cons
         }
     }
     return all;
+}
+
+TriMesh swept_mesh(const std::vector<Triangle>& swept) {
+    TriMesh mesh;
+    for (const Triangle& corner : swept) {
+        if ((corner[1] - corner[0]).cross(corner[2] - corner[0]).isZero(0)) continue;
+        const int first = static_cast<int>(mesh.position.size());
+        mesh.position.insert(mesh.position.end(), corner.begin(), corner.end());
+        mesh.triangle.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
 }
 
 namespace {
@@ -145,6 +157,22 @@ void name_blades(std::span<SeverEvent> events, const Aggregate& matter, const Ap
             }
             is_named[e] = 1;
             events[e].blade = static_cast<int>(b);
+        }
+    }
+}
+
+void mark_met(std::deque<std::vector<SeverEvent>>& plan, const Aggregate& matter,
+              const std::vector<Triangle>& swept, double reach) {
+    const TriMesh mesh = swept_mesh(swept);
+    if (mesh.triangle.empty()) return;
+    const Box near = box_of(mesh.position).widened(reach);
+    const TriangleTree tree(mesh);
+    for (std::vector<SeverEvent>& events : plan) {
+        for (SeverEvent& e : events) {
+            if (e.met) continue;
+            const Vec3 middle =
+                0.5 * (matter.particle_position.at(e.lower) + matter.particle_position.at(e.upper));
+            e.met = near.contains(middle) && tree.distance(middle) <= reach;
         }
     }
 }

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <span>
 #include <vector>
 
+#include "geometry/trimesh.h"
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "matter/point_side.h"
@@ -19,6 +21,7 @@ struct SeverEvent {
     ParticleId upper;
     float weight;  // share of the section that it had
     int blade = 0;
+    bool met = false;  // a blade has been beside it since it was planned
 };
 
 // The surface that the blade's edge sweeps between two poses, as triangles in the world. Neighbours
@@ -29,6 +32,9 @@ std::vector<std::array<Vec3, 3>> swept_triangles(const Blade& blade, const Pose&
 std::vector<std::array<Vec3, 3>> swept_triangles(const Apparatus& apparatus,
                                                  std::span<const Drive> way);
 
+// The same as a mesh, without what a blade at rest sweeps.
+TriMesh swept_mesh(const std::vector<std::array<Vec3, 3>>& swept);
+
 // The unsevered connections that the surface crosses, in the order of the lattice.
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<std::array<Vec3, 3>>& swept);
@@ -37,6 +43,10 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
 // whichever comes first: one beside it that finds nothing else parts nothing.
 void name_blades(std::span<SeverEvent> events, const Aggregate& matter, const Apparatus& apparatus,
                  std::span<const Drive> way);
+
+// Of events to come, by frame: those whose middle is within `reach` [m] of the surface are met.
+void mark_met(std::deque<std::vector<SeverEvent>>& plan, const Aggregate& matter,
+              const std::vector<std::array<Vec3, 3>>& swept, double reach);
 
 void sever(Aggregate& matter, std::span<const SeverEvent> events);
 
