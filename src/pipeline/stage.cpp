@@ -16,6 +16,7 @@
 #include "pipeline/frame_account.h"
 #include "pipeline/limit_watch.h"
 #include "pipeline/machine_place.h"
+#include "pipeline/motion_note.h"
 #include "pipeline/piece_fields.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
@@ -62,6 +63,7 @@ class StageRun {
           context_(context),
           connections_before_(connection_count(bodies)),
           volumes_before_(body_volumes(bodies)),
+          overlaps_before_(overlaps_of(bodies, stage.sim)),
           machine_(stage_machine(stage, bodies.front().matter, materials_beside(named(bodies)),
                                  box_of(bodies.front().position))),
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
@@ -78,6 +80,7 @@ class StageRun {
     StageOutcome run(int last_frame) {
         std::vector<Aggregate*> matter;
         for (WorkPiece& body : bodies_) matter.push_back(&body.matter);
+        const MotionLeft began = motion_of(bodies_);  // which equilibria end
         Simulation simulation = [&] {
             const auto lap = context_.watch.lap("set up");
             return Simulation(matter, machine_.apparatus, stage_.sim);
@@ -90,6 +93,7 @@ class StageRun {
             if (last_frame == 0) record_start();
         }
         begin_books(simulation);
+        if (!in_motion(stage_.sim.solver)) warn_of_motion(began);
         if (context_.from != nullptr) {
             come_back(simulation, *context_.from);
         } else {
@@ -121,6 +125,11 @@ class StageRun {
         if (!note.empty()) told.push_back(note);
         for (std::string& one : boundary_notes(bodies_)) told.push_back(std::move(one));
         for (const std::string& one : told) warn(fmt::format("{}: {}", stage_.name, one));
+    }
+
+    void warn_of_motion(const MotionLeft& began) {
+        const std::string note = motion_note(began, first_.elastic);
+        if (!note.empty()) warn(fmt::format("{}: {}", stage_.name, note));
     }
 
     void work_frames(Simulation& simulation) {
@@ -381,6 +390,7 @@ class StageRun {
                            .legs = way_.legs(),
                            .connections_before = connections_before_,
                            .volumes_before = volumes_before_,
+                           .overlaps_before = overlaps_before_,
                            .probes = probes()};
         const StageEnded ended = outcome_.interrupted ? StageEnded::interrupted
                                  : outcome_.stopped   ? StageEnded::stopped
@@ -413,6 +423,7 @@ class StageRun {
     const StageContext& context_;
     const std::size_t connections_before_;
     const std::vector<BodyVolume> volumes_before_;
+    const std::vector<double> overlaps_before_;
     Machine machine_;  // it may come to stop
     const int pieces_before_;
     StageWay way_;

@@ -57,6 +57,7 @@ struct StageEnd {
     std::size_t legs;
     std::size_t connections_before;
     const std::vector<BodyVolume>& volumes_before;
+    const std::vector<double>& overlaps_before;  // of each body with others (overlaps_of())
     std::vector<ProbePlace> probes;
 };
 

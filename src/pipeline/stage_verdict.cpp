@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "machines/start_notes.h"
 #include "pipeline/books_verdict.h"
+#include "sim/body_overlap.h"
 #include "sim/cell_volume.h"
 #include "sim/flowed_volume.h"
 #include "sim/gripped_pieces.h"
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double kSwollen = 0.01;  // of its volume that a skin may be off by untold
 constexpr double kShrunk = 0.01;   // likewise, that flow may change it by
-constexpr double kOverlap = 0.5;   // spacings that a body may lie in itself untold
+constexpr double kOverlap = 0.5;   // spacings that a body may lie in itself or another untold
 
 // What a body starts deep in, which throws it so, and what can be done about it.
 std::string how_deep(const Books& last, const StageEnd& end, const std::string& thrown) {
@@ -91,6 +92,32 @@ std::pair<double, std::string> lies_in_itself(const StageEnd& end, WorkPiece& bo
             length_text(overlap),
             sim.self_contact ? "it is pressed together harder than its contact_stiffness can hold"
                              : "self_contact = true in this stage prevents that")};
+}
+
+// What of bodies lies deeper in another than contact should let it: the worst of it, beside what
+// lay so as the stage began, which has been told. Empty: none does.
+std::string lies_in_another(const StageEnd& end) {
+    const std::vector<double> depth = overlaps_of(end.bodies, end.stage.sim);
+    const auto spacing = [&](std::size_t b) { return end.bodies[b].matter.lattice.spacing; };
+    std::size_t worst = 0, into = 0;
+    double most = kOverlap;
+    for (std::size_t b = 0; b < depth.size(); ++b) {
+        for (std::size_t c = 0; c < b; ++c) {
+            // The deepest of both is the same point.
+            if (!(depth[b] > 0) || depth[b] != depth[c]) continue;
+            const double cell = std::max(spacing(b), spacing(c));
+            if (std::min(end.overlaps_before[b], end.overlaps_before[c]) > kOverlap * cell) {
+                continue;
+            }
+            if (depth[b] > most * cell) most = depth[b] / cell, worst = b, into = c;
+        }
+    }
+    if (worst == into) return {};
+    return fmt::format(
+        "{} and {} lie {} deep in each other at the end: they met faster, or are pressed together "
+        "harder, than contact holds; more cells, a larger contact_stiffness or a lower speed avoid "
+        "that",
+        end.bodies[into].name, end.bodies[worst].name, length_text(depth[worst]));
 }
 
 // Flow that keeps the volume, and a skin that does not. Empty: as large as it should be.
@@ -259,7 +286,17 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             if (!told.empty()) warn(told);
         }
     }
+    if (ended != StageEnded::interrupted) {
+        if (const std::string told = lies_in_another(end); !told.empty()) warn(told);
+    }
     return verdict;
+}
+
+std::vector<double> overlaps_of(std::vector<WorkPiece>& bodies, const SimSettings& sim) {
+    if (!in_motion(sim.solver) || bodies.size() < 2) return std::vector<double>(bodies.size(), 0);
+    std::vector<Aggregate*> matter;
+    for (WorkPiece& body : bodies) matter.push_back(&body.matter);
+    return body_overlaps(matter, sim);
 }
 
 }  // namespace swage

@@ -14,6 +14,9 @@ struct StageVerdict {
     double overlap = 0;  // the deepest of a body with itself, where that is looked for [m]
 };
 
+// How deep each of several bodies in motion lies in another [m].
+std::vector<double> overlaps_of(std::vector<WorkPiece>& bodies, const SimSettings& sim);
+
 // `pieces_before`: of all bodies. A stage that ended early is not blamed for what it had not come
 // to; one that was interrupted not even looked at closely.
 enum class StageEnded { wholly, stopped, interrupted };

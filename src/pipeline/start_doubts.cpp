@@ -68,6 +68,17 @@ bool fly_together(const SceneSpec& scene, const std::vector<NamedMatter>& bodies
     return start_overlaps(bodies).empty();
 }
 
+// What equilibria that follow make of a body that is still in flight then.
+std::string motion_left_out(const SceneSpec& scene) {
+    if (scene.stage.size() < 2 || in_motion(scene.stage[1].sim.solver)) return {};
+    const StageSpec& stage = scene.stage.front();
+    const StartSpec& start = scene.work_piece().start;
+    const Vec3 velocity = start.velocity + stage.duration * stage.sim.gravity;
+    if (velocity == Vec3::Zero() && start.spin == Vec3::Zero()) return {};
+    return fmt::format("; {}, whose equilibria have no speed, leaves out that it still moves",
+                       scene.stage[1].name);
+}
+
 // Empty: something touches a plate in time, or that is not known.
 std::string flight_doubt(const SceneSpec& scene, const Machine& machine,
                          const std::vector<NamedMatter>& bodies) {
@@ -96,15 +107,15 @@ std::string flight_doubt(const SceneSpec& scene, const Machine& machine,
     const std::string& name = scene.body[which].name;
     if (soonest == kNever) {
         return bodies.size() == 1
-                   ? fmt::format("{}: {} never touches {}: nothing brings it there", stage.name,
-                                 name, all)
+                   ? fmt::format("{}: {} never touches {}: nothing brings it there{}", stage.name,
+                                 name, all, motion_left_out(scene))
                    : fmt::format("{}: no body ever touches {}: nothing brings any there",
                                  stage.name, all);
     }
     return fmt::format(
-        "{}: {} {} for {}{:.3g} s before it touches {}, and the stage takes {:.3g} s", stage.name,
+        "{}: {} {} for {}{:.3g} s before it touches {}, and the stage takes {:.3g} s{}", stage.name,
         name, sim.gravity == Vec3::Zero() ? "flies" : "falls", drags ? "more than " : "", soonest,
-        all, stage.duration);
+        all, stage.duration, motion_left_out(scene));
 }
 
 }  // namespace

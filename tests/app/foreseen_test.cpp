@@ -101,6 +101,13 @@ TEST_CASE("a body that cannot reach the floor in its stage is told how long it w
     CHECK(says(falls, "falls for 0.639 s before it touches floor, and the stage takes 0.3 s"));
     CHECK(!says(told(weight + "duration = \"0.7 s\"\n"), "before it touches"));
     CHECK(!says(told(weight + brief, "velocity = [0, \"-7 m/s\", 0]\n"), "touch"));
+    // What follows it in motion goes on; equilibria leave out how it falls.
+    const std::string press = "[[stage]]\nmachine = \"press\"\ndepth = 0.01\nframes = 1\n";
+    const std::string left = "2-press, whose equilibria have no speed, leaves out that it still";
+    CHECK(says(told(weight + brief + press), "takes 0.3 s; " + left));
+    CHECK(!says(told(weight + "duration = \"0.7 s\"\n" + press), left));
+    CHECK(!says(told(weight + brief + press + "solver = \"explicit\"\n"), left));
+    CHECK(!says(told(brief + press), left));
     CHECK(says(told(weight + brief, "velocity = [0, \"3 m/s\", 0]\n"),
                "falls for 1.01 s before it touches floor"));
     CHECK(says(told(brief, "velocity = [0, \"3 m/s\", 0]\n"),

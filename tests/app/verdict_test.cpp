@@ -329,3 +329,48 @@ frames = 24
     INFO(crushed);
     CHECK(says(crushed, "cells of the work-piece that had cracked were pressed until inside out"));
 }
+
+TEST_CASE("equilibria after motion tell what of that they leave out") {
+    const auto told = [](const std::string& duration) {
+        return told_of(kBar,
+                       "[[stage]]\nmachine = \"floor\"\ndrop = \"5 cm\"\ngravity = 9.81\n"
+                       "frames = 2\nduration = " +
+                           duration +
+                           "\n[[stage]]\nmachine = \"press\"\nsolver = \"quasistatic\"\n"
+                           "depth = 0.01\nframes = 1\n");
+    };
+    const std::string falling = told("\"50 ms\"");
+    INFO(falling);
+    CHECK(says(falling, "2-press: it begins in motion, at up to 490.5 mm/s, which equilibria "));
+    CHECK(says(falling, "J of kinetic energy are left out"));
+    CHECK(!says(told("\"2 s\""), "begins in motion"));
+}
+
+TEST_CASE(
+    "bodies that lie in each other after they met are told of, once, and that touch are not") {
+    const auto told = [](const std::string& speed) {
+        const Scratch scratch;
+        swage::write_obj(scratch.path() / "b.obj",
+                         box_mesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}));
+        const std::string stage =
+            "[[stage]]\nmachine = \"floor\"\ndrop = 0\ngravity = 0\nframes = ";
+        put_text(scratch.path() / "s.toml",
+                 "[mesh]\nfile = \"b.obj\"\nat = [0, 0.05, 0]\n[material]\nyoung_modulus = 1e6\n"
+                 "poisson_ratio = 0.3\ndensity = 1000\ndamping_ratio = 0.1\nrestitution = 0.3\n"
+                 "[mold]\nacross = 3\n[[body]]\nname = \"hit\"\nfile = \"b.obj\"\n"
+                 "at = [0.01, 0.22, 0.005]\nturn = [0.1, 0.2, 0.3]\nvelocity = [0, -" +
+                     speed + ", 0]\n" + stage + "40\nduration = 0.4\nstep_safety = 0.8\n" + stage +
+                     "2\nduration = 0.01\nstep_safety = 0.8\n");
+        const Outcome outcome =
+            run_swage({"run", "s.toml", "--out", "run", "--no-render"}, scratch.path());
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        return outcome.err;
+    };
+    const std::string fast = told("25");
+    INFO(fast);
+    CHECK(says(fast, "1-floor: work-piece and hit lie "));
+    CHECK(says(fast, " deep in each other at the end: they met faster"));
+    CHECK(!says(fast, "2-floor: work-piece and hit lie "));
+    CHECK(!says(told("2"), "deep in each other"));
+}

@@ -68,6 +68,7 @@ struct CutBar {
                            .legs = 8,
                            .connections_before = 0,
                            .volumes_before = volumes_before,
+                           .overlaps_before = {},
                            .probes = {}};
         std::string text;
         for (const std::string& line : judge_stage(end, 1, StageEnded::wholly).warning) {
