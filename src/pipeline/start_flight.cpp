@@ -73,9 +73,9 @@ double start_flight(const StageSpec& stage, const Machine& machine,
     const double frame = stage.duration / stage.frames;
     const auto flown_until = [&](double begin, double free) {
         double end = (std::floor(begin / frame * (1 + kRounding)) + 1) * frame;
-        const double most = begin + free;
+        const double most = std::min(begin + free, to.time);  // what nothing moves is free for good
         while (end < most && most - end > kWorthFlying * step) end += frame;
-        return std::min({end, most, to.time});
+        return std::min(end, most);
     };
     for (int n = 0; n < kMostLooks && now.time < to.time; ++n) {
         const double free = free_time(flying, machine.apparatus, from, to, now, sim.gravity);
