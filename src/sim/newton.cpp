@@ -232,19 +232,22 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     return firmness_ < -kFalls && firmness_ > -kTurns;
 }
 
-Newton::Astray Newton::astray(const Aggregate& matter, const Vec3Array& force,
-                              const Vec3Array& start) const {
-    const Vec3Array& way = softest_.motion();
-    if (way.size() != force.size() || !(firmness_ > 0)) return {};
-    double size = 0, gone = 0;
-    for (std::size_t p = 0; p < way.size(); ++p) {
-        const double mass = matter.particle_mass[p];
-        size += mass * way.at(p).squaredNorm();
-        gone += mass * way.at(p).dot(matter.particle_position.at(p) - start.at(p));
+Newton::Astray Newton::astray(const Aggregate& matter, const NewtonProblem& problem,
+                              const Vec3Array& force, const Vec3Array& start) {
+    if (!prepared_.stands) return {};
+    const auto times = [&](const Vec3Array& d, Vec3Array& r) {
+        product(matter, problem, prepared_.kind, d, r);
+    };
+    multigrid_.solve(times, force, direction_);
+    for (const Vec3Array& way : free_motions(matter, problem.held)) {
+        const double share = chunked_sum(way.size(), [&](std::size_t p) {
+            return matter.particle_mass[p] * way.at(p).dot(direction_.at(p));
+        });
+        combine(1, -share, way, direction_);
     }
-    const double longest = longest_of(way);
-    return {.gone = std::abs(gone / size) * longest,
-            .left = std::abs(dot(force, way) / firmness_) * longest};
+    image_ = matter.particle_position;
+    combine(1, -1, start, image_);
+    return {.gone = longest_of(image_), .left = longest_of(direction_)};
 }
 
 Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {

@@ -46,12 +46,13 @@ class Newton {
     bool buckles(const Aggregate& matter, const NewtonProblem& problem);
     const Vec3Array& softest_motion() const { return softest_.motion(); }
 
-    // How far the body has gone from `start` by its softest motion, as when last looked at, and how
-    // far these forces, left over, would still take it.
+    // How far the body has gone from `start`, and about how far these forces, left over, would
+    // still take it.
     struct Astray {
         double gone = 0, left = 0;  // [m]
     };
-    Astray astray(const Aggregate& matter, const Vec3Array& force, const Vec3Array& start) const;
+    Astray astray(const Aggregate& matter, const NewtonProblem& problem, const Vec3Array& force,
+                  const Vec3Array& start);
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
