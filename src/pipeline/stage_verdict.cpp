@@ -8,11 +8,11 @@
 #include "base/text.h"
 #include "machines/start_notes.h"
 #include "pipeline/books_verdict.h"
-#include "sim/body_overlap.h"
 #include "sim/cell_volume.h"
 #include "sim/flowed_volume.h"
 #include "sim/gripped_pieces.h"
 #include "sim/own_overlap.h"
+#include "sim/standing_contacts.h"
 
 namespace swage {
 
@@ -296,7 +296,9 @@ std::vector<double> overlaps_of(std::vector<WorkPiece>& bodies, const SimSetting
     if (!in_motion(sim.solver) || bodies.size() < 2) return std::vector<double>(bodies.size(), 0);
     std::vector<Aggregate*> matter;
     for (WorkPiece& body : bodies) matter.push_back(&body.matter);
-    return body_overlaps(matter, sim);
+    std::vector<double> depth;
+    for (const ContactSums& one : standing_contacts(matter, sim)) depth.push_back(one.penetration);
+    return depth;
 }
 
 }  // namespace swage

@@ -6,8 +6,8 @@
 #include <list>
 
 #include "geometry/box.h"
-#include "sim/body_contact.h"
 #include "sim/free_flight.h"
+#include "sim/standing_contacts.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -18,34 +18,21 @@ constexpr int kMostLooks = 200;  // each goes at least half of the way that is l
 constexpr double kRounding = 1e-9;
 
 // Whether any press on each other as they stand.
-bool any_press(const std::vector<NamedMatter>& bodies, SimSettings sim) {
+bool any_press(const std::vector<NamedMatter>& bodies, const SimSettings& sim) {
     std::vector<Box> box;
-    for (const NamedMatter& body : bodies) box.push_back(box_of(body.matter->particle_position));
-    std::vector<Aggregate> near;
-    for (std::size_t a = 0; a < box.size(); ++a) {
-        for (std::size_t b = 0; b < box.size(); ++b) {
-            if (a == b || gap_between(box[a], box[b]) > 0) continue;
-            near.push_back(*bodies[a].matter);
-            break;
+    bool near = false;
+    for (const NamedMatter& body : bodies) {
+        box.push_back(box_of(body.matter->particle_position));
+        for (std::size_t b = 0; b + 1 < box.size(); ++b) {
+            near = near || !(gap_between(box[b], box.back()) > 0);
         }
     }
-    if (near.empty()) return false;
-    std::vector<Vec3Array> unused(near.size());
+    if (!near) return false;
+    std::list<Aggregate> copy;
     std::vector<Aggregate*> matter;
-    std::vector<Vec3Array*> force;
-    for (std::size_t n = 0; n < near.size(); ++n) {
-        set_zero(near[n].particle_count(), unused[n]);
-        matter.push_back(&near[n]);
-        force.push_back(&unused[n]);
-    }
-    sim.self_contact = false;
-    BodyContact contact(matter, sim);
-    const std::vector<char> awake(near.size(), 0);
-    contact.renew(awake);
-    std::vector<ContactSums> sums;
-    contact.add_forces(force, Vec3::Zero(), 0, awake, sums);
-    return std::any_of(sums.begin(), sums.end(),
-                       [](const ContactSums& one) { return one.contacts > 0; });
+    for (const NamedMatter& body : bodies) matter.push_back(&copy.emplace_back(*body.matter));
+    return std::ranges::any_of(standing_contacts(matter, sim),
+                               [](const ContactSums& one) { return one.contacts > 0; });
 }
 
 }  // namespace

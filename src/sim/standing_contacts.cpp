@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/body_overlap.h"
+#include "sim/standing_contacts.h"
 
 #include "geometry/box.h"
 #include "sim/body_contact.h"
@@ -7,8 +7,9 @@
 
 namespace swage {
 
-std::vector<double> body_overlaps(const std::vector<Aggregate*>& bodies, SimSettings settings) {
-    std::vector<double> depth(bodies.size(), 0);
+std::vector<ContactSums> standing_contacts(const std::vector<Aggregate*>& bodies,
+                                           SimSettings settings) {
+    std::vector<ContactSums> all(bodies.size());
     std::vector<Box> box;
     for (const Aggregate* body : bodies) box.push_back(box_of(body->particle_position));
     std::vector<std::size_t> number;  // of those that may touch any
@@ -21,7 +22,7 @@ std::vector<double> body_overlaps(const std::vector<Aggregate*>& bodies, SimSett
             break;
         }
     }
-    if (near.empty()) return depth;
+    if (near.empty()) return all;
     std::vector<Vec3Array> unused(near.size());
     std::vector<Vec3Array*> force;
     for (std::size_t n = 0; n < near.size(); ++n) {
@@ -34,8 +35,8 @@ std::vector<double> body_overlaps(const std::vector<Aggregate*>& bodies, SimSett
     contact.renew_all(awake);
     std::vector<ContactSums> sums;
     contact.add_forces(force, Vec3::Zero(), 0, awake, sums);
-    for (std::size_t n = 0; n < near.size(); ++n) depth[number[n]] = sums[n].penetration;
-    return depth;
+    for (std::size_t n = 0; n < near.size(); ++n) all[number[n]] = sums[n];
+    return all;
 }
 
 }  // namespace swage
