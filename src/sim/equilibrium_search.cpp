@@ -245,8 +245,8 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
             const double hold = std::exchange(forces.hold, 0);  // it holds back what is left over
             forces.find(move.to);
             forces.hold = hold;
-            const Newton::Astray soft = newton_->astray(matter, problem, forces.force, begun_at_);
-            if (soft.left <= farthest_astray(matter, soft.gone) || !leave_less()) break;
+            const Newton::Astray way = newton_->astray(matter, problem, forces.force, begun_at_);
+            if (way.left <= farthest_astray(matter, way.gone) || !leave_less()) break;
             continue;
         }
         if (keeps_the_shape(matter, newton_->softest_motion())) break;

@@ -226,10 +226,10 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
         };
     };
     const SoftMode::Map prepared = times(prepared_.kind.geometric);
-    firmness_ = softest_.follow(
+    const double left = softest_.follow(
         matter.particle_mass, problem.diagonal, free_motions(matter, problem.held), times(1),
         times(0), [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
-    return firmness_ < -kFalls && firmness_ > -kTurns;
+    return left < -kFalls && left > -kTurns;
 }
 
 Newton::Astray Newton::astray(const Aggregate& matter, const NewtonProblem& problem,

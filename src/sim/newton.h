@@ -56,7 +56,7 @@ class Newton {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(multigrid_, falls_, prepared_, softest_, firmness_);
+        io(multigrid_, falls_, prepared_, softest_);
     }
 
   private:
@@ -101,7 +101,6 @@ class Newton {
     bool falls_ = false;  // some direction has had negative curvature
     Prepared prepared_;
     SoftMode softest_;
-    double firmness_ = 0;  // what is left of the softest motion's, when last looked at
     Vec3Array force_, direction_, residual_, search_, image_, better_, from_, bent_;
 };
 

@@ -39,11 +39,11 @@ class SoftMode {
   private:
     struct Found {
         Vec3Array motion, last{};  // the last step towards it
-        double left = 1;
+        double left = 1;           // when last looked at
 
         template <typename Io>
         void visit(Io& io) {
-            io(motion, last, left);
+            io(motion, last);
         }
     };
 
