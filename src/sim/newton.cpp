@@ -232,22 +232,32 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     return left < -kFalls && left > -kTurns;
 }
 
+// NOTE: along one motion, for what tools carry along as they go says nothing of how far a neck or a
+// slender body has come by itself.
 Newton::Astray Newton::astray(const Aggregate& matter, const NewtonProblem& problem,
                               const Vec3Array& force, const Vec3Array& start) {
     if (!prepared_.stands) return {};
-    const auto times = [&](const Vec3Array& d, Vec3Array& r) {
-        product(matter, problem, prepared_.kind, d, r);
+    const std::vector<double>& mass = matter.particle_mass;
+    const auto by_mass = [&](const Vec3Array& from, Vec3Array& to) {
+        to = from;
+        for (std::size_t p = 0; p < mass.size(); ++p) to.set(p, mass[p] * from.at(p));
     };
-    multigrid_.solve(times, force, direction_);
-    for (const Vec3Array& way : free_motions(matter, problem.held)) {
-        const double share = chunked_sum(way.size(), [&](std::size_t p) {
-            return matter.particle_mass[p] * way.at(p).dot(direction_.at(p));
-        });
-        combine(1, -share, way, direction_);
-    }
-    image_ = matter.particle_position;
-    combine(1, -1, start, image_);
-    return {.gone = longest_of(image_), .left = longest_of(direction_)};
+    const auto times = [&](double geometric) {
+        return [&, geometric](const Vec3Array& from, Vec3Array& to) {
+            product(matter, problem, {Flow::trial, geometric}, from, to);
+        };
+    };
+    const SoftMode::Map prepared = times(prepared_.kind.geometric);
+    const double stiffness = slowest_.follow(
+        mass, problem.diagonal, free_motions(matter, problem.held), times(1), by_mass,
+        [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
+    if (!(stiffness > 0)) return {};
+    const Vec3Array& way = slowest_.motion();
+    const double longest = longest_of(way), gone = chunked_sum(mass.size(), [&](std::size_t p) {
+        return mass[p] * way.at(p).dot(matter.particle_position.at(p) - start.at(p));
+    });
+    return {.gone = std::abs(gone) * longest,
+            .left = std::abs(dot(force, way) / stiffness) * longest};
 }
 
 Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {

@@ -46,8 +46,8 @@ class Newton {
     bool buckles(const Aggregate& matter, const NewtonProblem& problem);
     const Vec3Array& softest_motion() const { return softest_.motion(); }
 
-    // How far the body has gone from `start`, and about how far these forces, left over, would
-    // still take it.
+    // How far the body has gone from `start` by its slowest motion, that of least stiffness for its
+    // mass, and how far these forces, left over, would still take it.
     struct Astray {
         double gone = 0, left = 0;  // [m]
     };
@@ -56,7 +56,7 @@ class Newton {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(multigrid_, falls_, prepared_, softest_);
+        io(multigrid_, falls_, prepared_, softest_, slowest_);
     }
 
   private:
@@ -100,7 +100,7 @@ class Newton {
     double extent_;       // [m]
     bool falls_ = false;  // some direction has had negative curvature
     Prepared prepared_;
-    SoftMode softest_;
+    SoftMode softest_, slowest_;
     Vec3Array force_, direction_, residual_, search_, image_, better_, from_, bent_;
 };
 

@@ -22,7 +22,8 @@ class SoftMode {
     // Comes closer to that motion, of those that have nothing of what is `free`
     // (sim/free_motions.h), and now and then looks whether it is another by now. `mass` and
     // `stiffness` are those of each particle, the latter about; `product`: by the whole stiffness;
-    // `of_matter`: by the matter's own and what holds it; `solve` is about the inverse of either.
+    // `of_matter`: by the matter's own and what holds it, or by its mass, which makes it the
+    // slowest motion and what is left its stiffness [1/s2]; `solve` is about the inverse of either.
     // Returns what is left, as a share of the matter's own, never less than there is; 1 where the
     // matter itself has none.
     double follow(const std::vector<double>& mass, const std::vector<double>& stiffness,
