@@ -169,7 +169,7 @@ bool receive(int pipe, const ReadLimits& limits, std::string& bytes, bool& too_l
 
 // What `make` has of the mesh as its file holds it.
 template <typename Make>
-TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& make) {
+TriMesh read_with(const fs::path& file, const ReadLimits& limits, bool looks, const Make& make) {
     const std::string name = file.string();
     if (name.find('\0') != std::string::npos || file.empty())
         fail(ExitCode::mesh, "a mesh file needs a name");
@@ -183,6 +183,7 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
     source.file = fs::absolute(file).lexically_normal();
     source.file_bytes = limits.file_bytes;
     source.memory_bytes = limits.memory_bytes;
+    source.looks = looks;
 
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0)
@@ -251,7 +252,7 @@ bool keeps_numbers_beside(const fs::path& file) { return format_of(file) == Mesh
 
 bool goes_by_crease_angle(const fs::path& file) {
     TriMesh smooth;
-    const TriMesh sharp = read_with(file, {}, [&](RawMesh& raw) {
+    const TriMesh sharp = read_with(file, {}, false, [&](RawMesh& raw) {
         RawMesh same = raw;
         smooth = weld(same, kPi);
         return weld(raw, 0);
@@ -260,8 +261,8 @@ bool goes_by_crease_angle(const fs::path& file) {
 }
 
 TriMesh read_mesh(const fs::path& file, const ReadLimits& limits, std::vector<std::string>* finding,
-                  double crease_angle) {
-    return read_with(file, limits, [&](RawMesh& raw) {
+                  double crease_angle, bool looks) {
+    return read_with(file, limits, looks, [&](RawMesh& raw) {
         TriMesh mesh = weld(raw, crease_angle);
         if (finding != nullptr) {
             finding->insert(finding->end(), raw.finding.begin(), raw.finding.end());
@@ -273,7 +274,7 @@ TriMesh read_mesh(const fs::path& file, const ReadLimits& limits, std::vector<st
 }
 
 TriMesh read_as_numbered(const fs::path& file) {
-    return read_with(file, {}, [](RawMesh& raw) {
+    return read_with(file, {}, false, [](RawMesh& raw) {
         TriMesh mesh;
         mesh.position = std::move(raw.position);
         mesh.triangle = std::move(raw.triangle);

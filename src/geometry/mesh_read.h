@@ -27,9 +27,11 @@ struct ReadLimits {
 // applied, and what scales, shifts or turns the image of an OBJ or glTF material.
 //
 // `finding` receives one sentence for everything that the file held and the mesh does not, or that
-// was odd; without it they are logged as warnings. Throws Error(mesh): the file, the reason.
+// was odd; without it they are logged as warnings. `looks`: whether its look counts; else images
+// are neither looked for nor told of. Throws Error(mesh): the file, the reason.
 TriMesh read_mesh(const std::filesystem::path& file, const ReadLimits& limits = {},
-                  std::vector<std::string>* finding = nullptr, double crease_angle = kCreaseAngle);
+                  std::vector<std::string>* finding = nullptr, double crease_angle = kCreaseAngle,
+                  bool looks = true);
 
 // Whether a body of the file is shaded by the angle: one that has normals or groups of its own is
 // not, unless it has to be repaired. Throws as read_mesh().

@@ -345,14 +345,14 @@ class SceneReader {
                             &path_) == AI_SUCCESS;
         float value = 0;
         if (has_surface_map) {  // the factors mean little without the image they multiply
-            source_.finding.push_back(fmt::format(
+            source_.tell_of_look(fmt::format(
                 "material '{}': its image of metalness and roughness was left out", to.name));
         } else {
             if (from.Get(AI_MATKEY_METALLIC_FACTOR, value) == AI_SUCCESS) to.metallic = value;
             if (from.Get(AI_MATKEY_ROUGHNESS_FACTOR, value) == AI_SUCCESS) to.roughness = value;
         }
         if (from.GetTextureCount(aiTextureType_NORMALS) > 0)
-            source_.finding.push_back(
+            source_.tell_of_look(
                 fmt::format("material '{}': its normal map was left out", to.name));
         for (const aiTextureType type : kColorImages) {
             if (from.GetTextureCount(type) == 0) continue;
@@ -361,7 +361,7 @@ class SceneReader {
             if (!is_gltf() && from.Get(AI_MATKEY_UVTRANSFORM(type, 0), transform) == AI_SUCCESS &&
                 (transform.mScaling != aiVector2D(1, 1) ||
                  transform.mTranslation != aiVector2D(0, 0) || transform.mRotation != 0))
-                source_.finding.push_back(fmt::format(
+                source_.tell_of_look(fmt::format(
                     "material '{}': the offset and scale of its texture were left out", to.name));
             // An image stands in the place of a colour there, and assimp makes one up.
             if (source_.format == MeshFormat::dae) to.color = Vec3::Ones();
@@ -378,7 +378,7 @@ class SceneReader {
         } else if (inside->mHeight == 0 && inside->pcData != nullptr) {
             to.texture_bytes.assign(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
         } else {
-            source_.finding.push_back(
+            source_.tell_of_look(
                 fmt::format("material '{}': an uncompressed image was left out", to.name));
         }
     }

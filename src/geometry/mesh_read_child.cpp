@@ -81,25 +81,17 @@ std::string url_decoded(const std::string& text) {
     return out;
 }
 
-// The first bytes of a file, as far as it has any.
-std::string head_of(const fs::path& file) {
-    std::string head(16, '\0'), why;
-    const FileHandle opened = open_plain_file(file, why);
-    if (opened.id() < 0) return {};
-    head.resize(read_up_to(opened.id(), head.data(), head.size()).value_or(0));
-    return head;
-}
-
 void tell_of_picture(const RawMaterial& material, MeshSource& source) {
     if (material.texture.empty() && material.texture_bytes.empty()) return;
-    const std::optional<PictureKind> kind =
-        picture_kind(material.texture.empty() ? material.texture_bytes : head_of(material.texture));
+    const std::optional<PictureKind> kind = material.texture.empty()
+                                                ? picture_kind(material.texture_bytes)
+                                                : picture_kind_of(material.texture);
     if (!kind || kind->is_read) return;
     const std::string name =
         material.texture.empty()
             ? ""
             : fmt::format(" '{}'", fs::path(material.texture).filename().string());
-    source.finding.push_back(fmt::format(
+    source.tell_of_look(fmt::format(
         "material '{}': its image{} is of type {}; only PNG, JPEG, BMP and TGA are drawn",
         material.name, name, kind->name));
 }
@@ -109,7 +101,9 @@ RawMesh read_raw(MeshSource& source) {
                    : source.format == MeshFormat::ply ? read_ply(source)
                    : source.format == MeshFormat::off ? read_off(source)
                                                       : read_by_assimp(source);
+    if (!source.looks) mesh.color.clear();
     for (RawMaterial& material : mesh.material) {
+        if (!source.looks) material.texture.clear(), material.texture_bytes.clear();
         if (material.texture.empty()) {
             tell_of_picture(material, source);
             continue;
@@ -123,7 +117,7 @@ RawMesh read_raw(MeshSource& source) {
         // Exporters that leave the colour black beside an image do not mean it.
         if (!image.empty() && material.color.isZero()) material.color = Vec3::Ones();
     }
-    if (mesh.material.empty() && !mesh.triangle_uv.empty()) {
+    if (source.looks && mesh.material.empty() && !mesh.triangle_uv.empty()) {
         const fs::path image = guess_image(source.file);
         if (!image.empty()) {
             mesh.material.push_back({.name = "material", .color = Vec3::Ones()});

@@ -26,7 +26,13 @@ struct MeshSource {
     std::string bytes;           // the file's contents
     std::uint64_t file_bytes;    // limit for each further file
     std::uint64_t memory_bytes;  // and for the whole reading
+    bool looks;                  // whether its look counts
     std::vector<std::string> finding;
+
+    // What a file has of its look and the mesh has not.
+    void tell_of_look(std::string sentence) {
+        if (looks) finding.push_back(std::move(sentence));
+    }
 };
 
 // Colours here are linear RGB. A texture is either the path of a file or its contents.

@@ -98,7 +98,7 @@ class GltfPatch {
             fail(ExitCode::mesh, "it requires {}, which is not supported; save it without",
                  unknown);
         if (!unlike.empty())
-            source_.finding.push_back(
+            source_.tell_of_look(
                 fmt::format("it uses {}, which is not supported: it may look different", unlike));
     }
 
@@ -110,7 +110,7 @@ class GltfPatch {
             if (!test(material)) continue;
             if (count++ == 0) name = material.value("name", "");
         }
-        if (count > 0) source_.finding.push_back(unlike_sentence(how, count, name, by));
+        if (count > 0) source_.tell_of_look(unlike_sentence(how, count, name, by));
     }
 
     // The factor multiplies the image; without one there is no light.

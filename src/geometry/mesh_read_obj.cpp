@@ -227,14 +227,13 @@ class ObjReader {
         }
         if (count == 0) return;
         if (count > 5) names += fmt::format(" and {} more", count - 5);
-        source_.finding.push_back(fmt::format("no material file defines {} {}: left grey",
-                                              count == 1 ? "the material" : "the materials",
-                                              names));
+        source_.tell_of_look(fmt::format("no material file defines {} {}: left grey",
+                                         count == 1 ? "the material" : "the materials", names));
     }
 
     void tell_unlike(Unlike how, const std::set<int>& materials, const char* by) {
         if (materials.empty()) return;
-        source_.finding.push_back(
+        source_.tell_of_look(
             unlike_sentence(how, materials.size(), material_name_[*materials.begin()], by));
     }
 
@@ -254,7 +253,7 @@ class ObjReader {
         for (std::string_view word; !(word = next_word(rest)).empty();)
             found += word != names && try_name(std::string(word));
         if (found == 0)
-            source_.finding.push_back(fmt::format("the material file '{}' cannot be read", names));
+            source_.tell_of_look(fmt::format("the material file '{}' cannot be read", names));
         return found > 0;
     }
 
@@ -311,7 +310,7 @@ class ObjReader {
         if (keys.empty()) return;
         std::sort(keys.begin(), keys.end());
         keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-        source_.finding.push_back(
+        source_.tell_of_look(
             fmt::format("of the materials' {} used, not {}", used, joined(keys, ", ")));
     }
 

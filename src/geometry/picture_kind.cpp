@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/picture_kind.h"
 
+#include <string>
+
+#include "base/file_contents.h"
+
 namespace swage {
 
 namespace {
@@ -38,6 +42,14 @@ std::optional<PictureKind> picture_kind(std::string_view bytes) {
         if (bytes.size() > mark.at && bytes.substr(mark.at).starts_with(mark.bytes))
             return mark.kind;
     return std::nullopt;
+}
+
+std::optional<PictureKind> picture_kind_of(const std::filesystem::path& file) {
+    std::string head(16, '\0'), why;
+    const FileHandle opened = open_plain_file(file, why);
+    if (!opened.is_open()) return std::nullopt;
+    head.resize(read_up_to(opened.id(), head.data(), head.size()).value_or(0));
+    return picture_kind(head);
 }
 
 }  // namespace swage

@@ -2,6 +2,7 @@
 // Kinds of pictures by their first bytes.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
@@ -14,5 +15,6 @@ struct PictureKind {
 
 // None of what has no such mark, as a TGA.
 std::optional<PictureKind> picture_kind(std::string_view bytes);
+std::optional<PictureKind> picture_kind_of(const std::filesystem::path& file);
 
 }  // namespace swage

@@ -59,9 +59,10 @@ SurfaceMaterial inset_look(const InsetSpec& inset, const SurfaceMaterial& cut,
 }  // namespace
 
 std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& mesh) {
-    if (body.color) {
+    if (body.color || !body.mesh.texture.empty()) {
         SurfaceMaterial look;
-        look.color = *body.color;
+        look.color = body.color.value_or(Vec3::Ones());
+        look.texture = body.mesh.texture;
         if (body.metal.value_or(false)) {
             look.metallic = 1;
             look.roughness = kMetalRoughness;
@@ -101,7 +102,7 @@ std::vector<SurfaceMaterial> inset_looks(const BodySpec& body, const TriMesh& dr
 }
 
 bool hides_material(const BodySpec& body, const TriMesh& mesh) {
-    return body.look && !body.color && !body.wears_material && !says_none(mesh);
+    return body.look && !body.is_painted() && !says_none(mesh);
 }
 
 }  // namespace swage

@@ -8,8 +8,8 @@
 
 namespace swage {
 
-// How all of a body looks: by the scene's colour, or else by its material, where the mesh says
-// nothing or the scene asks for it. None: as the mesh says.
+// How all of a body looks: by the scene's colour or texture, or else by its material, where the
+// mesh says nothing or the scene asks for it. None: as the mesh says.
 std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& mesh);
 
 // Gives all its materials the scene's colour of what lies under them, if it has one.

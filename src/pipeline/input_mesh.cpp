@@ -11,6 +11,7 @@
 #include "geometry/mesh_repair.h"
 #include "pipeline/body_look.h"
 #include "pipeline/start_warnings.h"
+#include "render/image_read.h"
 
 namespace swage {
 
@@ -28,6 +29,29 @@ bool looks_the_same(const TriMesh& a, const TriMesh& b) {
            a.triangle_uv.empty() == b.triangle_uv.empty() &&
            a.position_color.empty() == b.position_color.empty() &&
            a.triangle_smooth.empty() == b.triangle_smooth.empty();
+}
+
+// A picture that cannot be drawn, or has no place on the skin.
+void refuse_texture(const BodySpec& body, const TriMesh& mesh, SkinKind skin) {
+    const MeshSpec& spec = body.mesh;
+    if (spec.texture.empty()) return;
+    const auto refuse = [&](const std::string& why) {
+        throw SceneError({mistake_at(spec.texture_place, why)});
+    };
+    if (mesh.triangle_uv.empty()) {
+        refuse(
+            fmt::format("the mesh {} has no texture coordinates: nothing says where the texture "
+                        "lies on it",
+                        spec.file.filename().string()));
+    }
+    if (skin == SkinKind::boundary && body.mold.kind == MoldKind::block) {
+        refuse("the boundary of a block has no texture coordinates: give it a color instead");
+    }
+    try {
+        read_image(spec.texture);
+    } catch (const Error& error) {
+        refuse(error.what());
+    }
 }
 
 }  // namespace
@@ -51,9 +75,9 @@ void make_solid(InputMesh& input, MoldKind kind, double crease_angle) {
 }
 
 InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length,
-                             double crease_angle) {
+                             double crease_angle, bool looks) {
     InputMesh input;
-    input.mesh = read_mesh(file, {}, &input.finding, crease_angle);
+    input.mesh = read_mesh(file, {}, &input.finding, crease_angle, looks);
     if (length) {
         input.scale = scale_to(*length, input.mesh);
         if (input.scale != 1) {
@@ -71,8 +95,8 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
     return input;
 }
 
-InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle) {
-    InputMesh input = read_mesh_as_it_is(spec.file, spec.length, crease_angle);
+InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle, bool looks) {
+    InputMesh input = read_mesh_as_it_is(spec.file, spec.length, crease_angle, looks);
     log_info("{}: {}", spec.file.filename().string(), summary_line(input.report));
     make_solid(input, kind, crease_angle);
     return input;
@@ -82,7 +106,7 @@ std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
     std::vector<InputMesh> input;
     const auto is_same = [](const BodySpec& a, const BodySpec& b) {
         return a.mesh.file == b.mesh.file && a.mesh.length == b.mesh.length &&
-               a.mold.kind == b.mold.kind;
+               a.mold.kind == b.mold.kind && a.is_painted() == b.is_painted();
     };
     for (const BodySpec& body : scene.body) {
         const auto known = std::find_if(scene.body.begin(), scene.body.end(),
@@ -91,8 +115,10 @@ std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
         if (n < input.size()) {
             input.push_back(InputMesh(input[n]));
         } else {
-            input.push_back(read_input_mesh(body.mesh, body.mold.kind, scene.skin.crease_angle));
+            input.push_back(read_input_mesh(body.mesh, body.mold.kind, scene.skin.crease_angle,
+                                            !body.is_painted()));
         }
+        refuse_texture(body, input.back().mesh, scene.skin.kind);
     }
     for (std::size_t b = 0; b < input.size(); ++b) {
         const BodySpec& body = scene.body[b];

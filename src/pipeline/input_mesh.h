@@ -27,13 +27,14 @@ struct InputMesh {
 };
 
 // Reads, scales to `length` (the longest side of the box [m]) and reports. Throws Error(mesh).
-// `crease_angle`: as SkinSettings has it.
+// `crease_angle`: as SkinSettings has it; `looks`: as read_mesh() has it.
 InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length,
-                             double crease_angle = kCreaseAngle);
+                             double crease_angle = kCreaseAngle, bool looks = true);
 
 // The same, and makes sure that it can be molded. Logs one line always, and the account of a
 // repair, not what is found.
-InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle = kCreaseAngle);
+InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle = kCreaseAngle,
+                          bool looks = true);
 
 // Repairs a mesh that does not bound a volume, and one whose bodies make it a wrong one. A block is
 // molded over the box alone.

@@ -145,9 +145,13 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
         const std::string role = b == 0 ? "mesh" : "mesh of " + body.name;
         add_file(identity, role, body.mesh.file);
         add_as_read(identity, role, body.mesh.file, input[b].mesh);
+        const auto add_texture = [&](const fs::path& picture) {
+            if (picture.empty()) return;
+            add_file(identity, "texture " + picture.filename().string(), picture);
+        };
+        add_texture(body.mesh.texture);
         for (const SurfaceMaterial& material : input[b].mesh.material) {
-            if (material.texture.empty()) continue;
-            add_file(identity, "texture " + material.texture.filename().string(), material.texture);
+            add_texture(material.texture);
         }
     }
     identity.input.push_back({"--set", joined(options.overrides, ", "),

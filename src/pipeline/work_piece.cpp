@@ -295,7 +295,10 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     as_it_stands.probe.clear();
     // It is painted already, but where it was cut; what is made for a block's box is not.
     const bool is_blank = skin.kind == SkinKind::boundary && body.mold.kind == MoldKind::block;
-    if (!is_blank) as_it_stands.color.reset(), as_it_stands.wears_material = false;
+    if (!is_blank) {
+        as_it_stands.color.reset(), as_it_stands.wears_material = false;
+        as_it_stands.mesh.texture.clear();
+    }
     // Bent, its box says nothing of how thick it is.
     as_it_stands.mold.across.reset();
     as_it_stands.mold.spacing = in_whole_layers(piece.matter.lattice.spacing,

@@ -10,6 +10,7 @@
 
 #include "base/interrupt.h"
 #include "geometry/mesh_read.h"
+#include "geometry/picture_kind.h"
 
 namespace swage {
 
@@ -74,6 +75,13 @@ std::optional<std::string> why_no_mesh(const std::filesystem::path& file) {
     const std::optional<std::string> reason = why_unreadable(file);
     if (reason || is_mesh_file_name(file)) return reason;
     return fmt::format("is not a mesh format that can be read: {}", kMeshKinds);
+}
+
+std::optional<std::string> why_no_texture(const std::filesystem::path& file) {
+    if (const std::optional<std::string> reason = why_unreadable(file)) return reason;
+    const std::optional<PictureKind> kind = picture_kind_of(file);
+    if (!kind || kind->is_read) return std::nullopt;
+    return fmt::format("is of type {}: it must be PNG, JPEG, BMP or TGA", kind->name);
 }
 
 std::optional<std::string> read_text(const std::filesystem::path& file, const Place& place,

@@ -15,6 +15,9 @@ namespace swage {
 // As why_unreadable(), of one that has to be a mesh, of a kind that can be read.
 std::optional<std::string> why_no_mesh(const std::filesystem::path& file);
 
+// Likewise, of one that has to be a picture that can be drawn on a mesh.
+std::optional<std::string> why_no_texture(const std::filesystem::path& file);
+
 // The whole file. Reports and gives nothing when it cannot be read, is larger than `limit` or holds
 // bytes that are no UTF-8 text.
 std::optional<std::string> read_text(const std::filesystem::path& file, const Place& place,

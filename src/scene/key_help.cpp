@@ -15,13 +15,18 @@ constexpr KeyHelp kSceneKeys[] = {
     {"[mesh]", "spin", "initial spin about its centre of mass"},
     {"[mesh]", "color", "red, green, blue in place of the file's colour",
      "[red, green, blue], each 0 to 1"},
+    {"[mesh]", "texture",
+     "picture in place of the file's colours, where the mesh has texture coordinates; a path "
+     "relative to the scene",
+     "name of a PNG, JPEG, BMP or TGA file", "-"},
     {"[mesh]", "cut_color",
      "colour of faces that cuts and breaks lay open; left out: as what covers most of the mesh, "
      "paler, and pale under a texture",
      "[red, green, blue], each 0 to 1"},
     {"[mesh]",
      "finish",
-     "finish of that color; left out: as rough and clear as the material's look, if that is "
+     "finish of that color or texture; left out: as rough and clear as the material's look, if "
+     "that is "
      "not metal",
      {},
      "-"},

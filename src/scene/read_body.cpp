@@ -44,18 +44,36 @@ void read_file(TableReader& table, const fs::path& folder, const char* what, Mes
     }
 }
 
+void read_texture(TableReader& table, const fs::path& folder, BodySpec& body) {
+    std::string file;
+    if (!table.text("texture", file)) return;
+    body.mesh.texture = (folder / file).lexically_normal();
+    body.mesh.texture_place = table.find("texture")->place;
+    if (const auto reason = why_no_texture(body.mesh.texture)) {
+        table.mistake("texture", fmt::format("the texture \"{}\" {} ({})", file, *reason,
+                                             body.mesh.texture.string()));
+    }
+}
+
 void read_start(TableReader& table, BodySpec& body) {
     Vec3 at = Vec3::Zero();
     if (table.vector("at", Quantity::length, at)) body.start.at = at;
     table.vector("turn", Quantity::angle, body.start.turn);
     table.vector("velocity", Quantity::speed, body.start.velocity);
     table.vector("spin", Quantity::spin, body.start.spin);
+}
+
+void read_paint(TableReader& table, const fs::path& folder, BodySpec& body) {
     read_color(table, body.color);
+    read_texture(table, folder, body);
     read_color(table, body.cut_color, "cut_color");
     if (table.choice<std::optional<bool>>("finish", {{"matt", false}, {"metal", true}},
                                           body.metal) &&
-        !body.color) {
-        table.mistake("finish", "finish needs a color beside it");
+        !body.color && body.mesh.texture.empty()) {
+        table.mistake("finish", "finish needs a color or a texture beside it");
+    }
+    if (body.color && !body.mesh.texture.empty()) {
+        table.mistake("texture", "texture excludes a color: give one of them");
     }
     table.choice<bool>("look", {{"file", false}, {"material", true}}, body.wears_material);
 }
@@ -93,12 +111,16 @@ void read_fineness(TableReader& table, BodySpec& body) {
 void read_mesh_section(TableReader& table, const fs::path& scene_folder, BodySpec& body) {
     read_file(table, scene_folder, "the mesh to machine", body.mesh);
     read_start(table, body);
+    read_paint(table, scene_folder, body);
     table.finish();
 }
 
 void refuse_look(TableReader& table, const BodySpec& body) {
     if (!body.wears_material) return;
     if (body.color) table.mistake("look", "look = \"material\" excludes a color: give one of them");
+    if (!body.mesh.texture.empty()) {
+        table.mistake("look", "look = \"material\" excludes a texture: give one of them");
+    }
     if (!body.look) {
         table.mistake("look",
                       "look = \"material\", but the material has no look: give it one, such as "
@@ -164,6 +186,7 @@ void BodyReader::read(const Node& node, SceneSpec& scene) {
     read_name(table, scene, body);
     read_file(table, scene_folder_, "the mesh of the body", body.mesh);
     read_start(table, body);
+    read_paint(table, scene_folder_, body);
     read_fineness(table, body);
     read_material_key(table, scene, body);
     refuse_look(table, body);

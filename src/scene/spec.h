@@ -24,6 +24,9 @@ namespace swage {
 struct MeshSpec {
     std::filesystem::path file;    // absolute
     std::optional<double> length;  // [m] of the longest side of the box; none: file's own
+    std::filesystem::path
+        texture;          // absolute; all over it, instead of what its file says; or empty
+    Place texture_place;  // where the scene says which
 };
 
 // Where the work-piece is of another material: inside a mesh, placed and scaled as the work-piece's
@@ -57,8 +60,8 @@ struct BodySpec {
     std::string name = "work-piece";  // a file name
     MeshSpec mesh;
     StartSpec start;
-    std::optional<Vec3> color;      // linear RGB, instead of what its file says
-    std::optional<bool> metal;      // that colour is; none: matt, or clear, as the material looks
+    std::optional<Vec3> color;  // linear RGB, instead of what its file says
+    std::optional<bool> metal;  // that is, or the texture; none: matt, or clear, as the material
     std::optional<Vec3> cut_color;  // linear RGB, of faces that cuts and breaks lay open
     bool wears_material = false;    // looks as its material does whatever its file says
     Material material;
@@ -70,6 +73,8 @@ struct BodySpec {
     MoldSettings mold;
     Place fineness_place, limit_place;  // where the scene says how fine that is, and its limit
 
+    // Whether the scene says how all of it looks, whatever its file says.
+    bool is_painted() const { return color || wears_material || !mesh.texture.empty(); }
     // Of its objects and looks in files: what its mesh is called, where nobody named it.
     std::string label() const {
         return name == BodySpec().name && !mesh.file.empty() ? mesh.file.stem().string() : name;

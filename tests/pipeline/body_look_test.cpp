@@ -4,8 +4,11 @@
 #include "geometry/make_shape.h"
 #include "geometry/mesh_write.h"
 #include "pipeline/work_piece.h"
+#include "render/png.h"
+#include "scene/mistake.h"
 #include "tests/catch.h"
 #include "tests/shared/meshes.h"
+#include "tests/shared/says.h"
 #include "tests/shared/scratch.h"
 
 using namespace swage;
@@ -120,4 +123,69 @@ TEST_CASE(
     CHECK(painted(kCopper, {}).roughness == SurfaceMaterial().roughness);
     CHECK(painted(kCopper, true).metallic == 1);
     CHECK(painted({}, {}).roughness == SurfaceMaterial().roughness);
+}
+
+TEST_CASE(
+    "the scene's texture is all that is drawn on a mesh, and of the file's look nothing is told") {
+    const Scratch scratch;
+    TriMesh mesh = bar(true).mesh;
+    mesh.position_color.assign(mesh.position.size(), Eigen::Vector3f(1, 0, 0));
+    mesh.material[0].texture = scratch.path() / "gone.png";
+    write_obj(scratch.path() / "bar.obj", mesh);
+    write_png(scratch.path() / "cow.png", {1, 1, {1, 2, 3}});
+    SceneSpec scene;
+    scene.body = {body_of(kIce), body_of(kIce)};
+    for (BodySpec& body : scene.body) {
+        body.mesh.file = scratch.path() / "bar.obj";
+        body.gives_look = true;
+    }
+    scene.body[1].name = "other";
+    scene.body[0].mesh.texture = scratch.path() / "cow.png";
+    const std::vector<InputMesh> input = read_input_meshes(scene);
+    CHECK(input[0].finding.empty());
+    CHECK(input[1].finding.size() ==
+          2);  // its image is missing, and that hides the material's look
+    for (const SkinKind kind : {SkinKind::mount, SkinKind::boundary}) {
+        const WorkPiece piece = make_work_piece(input[0], scene.body[0], {kind});
+        REQUIRE(piece.skin.material.size() == 1);
+        const SurfaceMaterial& look = piece.skin.material[0];
+        CHECK(look.texture == scratch.path() / "cow.png");
+        CHECK(look.color == Vec3::Ones());
+        CHECK(look.clear == kIce.clear);
+        CHECK(piece.skin.position_color.empty());
+        CHECK_FALSE(piece.skin.triangle_uv.empty());
+    }
+}
+
+TEST_CASE(
+    "a texture that is no picture, or has no place on the mesh, is refused where it is named") {
+    const Scratch scratch;
+    write_png(scratch.path() / "cow.png", {1, 1, {1, 2, 3}});
+    scratch.write("torn.png", "\x89PNG\r\n\x1a\n");
+    TriMesh plain = bar(false).mesh;
+    write_obj(scratch.path() / "bar.obj", plain);
+    plain.uv.clear(), plain.triangle_uv.clear();
+    write_obj(scratch.path() / "plain.obj", plain);
+    const auto why = [&](const char* file, const char* texture, SkinKind skin, MoldKind mold) {
+        SceneSpec scene;
+        BodySpec body = body_of(kIce);
+        body.mesh.file = scratch.path() / file;
+        body.mesh.texture = scratch.path() / texture;
+        body.mold.kind = mold;
+        scene.body = {body};
+        scene.skin.kind = skin;
+        try {
+            read_input_meshes(scene);
+        } catch (const SceneError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    CHECK(why("bar.obj", "cow.png", SkinKind::boundary, MoldKind::shape).empty());
+    CHECK(why("bar.obj", "cow.png", SkinKind::mount, MoldKind::block).empty());
+    CHECK(says(why("bar.obj", "torn.png", SkinKind::mount, MoldKind::shape), "torn.png: "));
+    CHECK(says(why("plain.obj", "cow.png", SkinKind::mount, MoldKind::shape),
+               "the mesh plain.obj has no texture coordinates"));
+    CHECK(says(why("bar.obj", "cow.png", SkinKind::boundary, MoldKind::block),
+               "the boundary of a block has no texture coordinates"));
 }

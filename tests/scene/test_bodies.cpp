@@ -119,7 +119,7 @@ TEST_CASE("mistakes in bodies are found") {
         {"colour", beside("file = \"bar.obj\"\ncolor = [2, 0, 0]\n"), {"14:9: color = [2, 0, 0]"}},
         {"finish",
          beside("file = \"bar.obj\"\nfinish = \"metal\"\n"),
-         {"finish needs a color beside it"}},
+         {"finish needs a color or a texture beside it"}},
         {"two in equilibrium",
          still,
          {"9:10: solver = \"quasistatic\" computes equilibria and allows"}},

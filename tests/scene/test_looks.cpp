@@ -2,6 +2,7 @@
 // How a scene asks to be seen.
 #include "scene/catalogue.h"
 #include "tests/scene/bad_scene.h"
+#include "tests/shared/says.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -156,4 +157,33 @@ TEST_CASE("mistakes in looks are told at their places") {
               "color = [0, 2, 0]\n"),
          {"color = [0, 2, 0]: red, green and blue must each be 0 to 1"}},
     });
+}
+
+TEST_CASE(
+    "a texture lies in the scene's folder, is of a kind that is drawn, and is the only look") {
+    const SceneFolder scratch;
+    scratch.write("cow.png", "\x89PNG\r\n");
+    scratch.write("cow.tga", "no kind that its first bytes tell");
+    scratch.write("cow.webp", "RIFF....WEBP");
+    const auto read = [&](const std::string& more) {
+        const Parts parts = with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\n" + more);
+        return read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
+    };
+    const auto mistakes = [&](const std::string& more) {
+        return told(read(more).mistakes, scratch.path());
+    };
+    const SceneReading good = read("texture = \"cow.png\"\nfinish = \"metal\"\n");
+    REQUIRE(good.scene);
+    CHECK(good.scene->work_piece().mesh.texture == scratch.path() / "cow.png");
+    CHECK(good.scene->work_piece().is_painted());
+    CHECK(read("texture = \"cow.tga\"\n").scene);
+    CHECK(says(mistakes("texture = \"cat.png\"\n"),
+               "s.toml:3:11: the texture \"cat.png\" does not exist ("));
+    CHECK(says(mistakes("texture = \"cow.webp\"\n"),
+               "s.toml:3:11: the texture \"cow.webp\" is of type WebP: it must be PNG, JPEG, "
+               "BMP or TGA ("));
+    CHECK(says(mistakes("texture = \"cow.png\"\ncolor = [1, 0, 0]\n"),
+               "s.toml:3:11: texture excludes a color: give one of them"));
+    CHECK(says(mistakes("texture = \"cow.png\"\nlook = \"material\"\n"),
+               "s.toml:4:8: look = \"material\" excludes a texture: give one of them"));
 }
