@@ -144,6 +144,23 @@ PointCarriage carriage_on_side(const Aggregate& matter, std::size_t point) {
     return carriage_by(matter, point, matter.surface.side(point));
 }
 
+PointCarriage brought_to(const Vec3& at, const Aggregate& matter, PointCarriage by) {
+    constexpr int kTries = 20;
+    constexpr double kExact = 1e-12, kFar = 1;  // [cells]
+    const double a = matter.lattice.spacing;
+    const Vec3 molded = by.place;
+    for (int n = 0; n < kTries; ++n) {
+        const Vec3 off = at - by.position(matter);
+        if (off.norm() <= kExact * a) return by;
+        const Mat3 along = a * cell_gradient(matter, corners_of(by.row), by.place);
+        if (!(along.determinant() > 0)) break;
+        by.place += along.inverse() * off;
+        if (!((by.place - molded).cwiseAbs().maxCoeff() <= kFar)) break;
+    }
+    by.is_whole = false;
+    return by;
+}
+
 PointCarriage carriage_on_piece(const Aggregate& matter, std::size_t point, const Pieces& pieces,
                                 int piece) {
     const std::array<ParticleId, 8> corner = matter.surface.corner(point);

@@ -43,6 +43,11 @@ inline void carry(SurfacePoints& points, std::size_t point, const PointCarriage&
     points.set(point, by.row, by.place, points.area(point), points.normal(point));
 }
 
+// The same where matter is bent: the cell carries what lies at this place now [m], which a carriage
+// as molded would shift by as much as that cell is bent unlike the one that carried it before. Not
+// whole where the cell's shape does not tell, or only by far.
+PointCarriage brought_to(const Vec3& at, const Aggregate& matter, PointCarriage by);
+
 // The piece that carries a point. Its cell may have corners on others too, none of which weighs
 // anything.
 int piece_of(const PointCarriage& carriage, const Pieces& pieces);

@@ -73,6 +73,10 @@ std::vector<TouchPoints::Carried> TouchPoints::carry_beside(const Aggregate& mat
     const auto carriage = [&](std::size_t p) {
         return PointCarriage{points_.row(p), points_.place(p)};
     };
+    const bool is_new = whole_.empty();  // else cells that were until now
+    const auto was_let_go = [&](std::size_t p) {
+        return carrier_[p] >= 0 && !is_new && !whole_[std::size_t(carrier_[p])];
+    };
     std::vector<Carried> were;
     for (const auto& [point, molded] : beside_) {
         were.push_back({point, carriage(std::size_t(point))});
@@ -91,14 +95,24 @@ std::vector<TouchPoints::Carried> TouchPoints::carry_beside(const Aggregate& mat
     beside_.clear();
     std::vector<Carried> changed;
     auto was = were.begin();
-    for (const auto& [point, by] : parallel_collect<Carried>(own_, kPoints, find)) {
-        const PointCarriage molded = carriage(std::size_t(point));
-        carry(points_, std::size_t(point), by);
-        meets_[std::size_t(point)] = 1;
-        beside_.push_back({point, molded});
+    for (auto [point, by] : parallel_collect<Carried>(own_, kPoints, find)) {
+        const auto p = static_cast<std::size_t>(point);
+        const PointCarriage molded = carriage(p);
         while (was != were.end() && was->point < point) changed.push_back(*was++);
         const bool had = was != were.end() && was->point == point;
-        if (!had || was->by.row != by.row) changed.push_back({point, had ? was->by : molded});
+        const PointCarriage before = had ? was->by : molded;
+        if (had && before.row == by.row) {
+            by = before;
+        } else if (!had && was_let_go(p)) {
+            continue;
+        } else if (!is_new) {
+            by = brought_to(before.position(matter), matter, by);
+        }
+        if (!by.is_whole) continue;
+        carry(points_, p, by);
+        meets_[p] = 1;
+        beside_.push_back({point, molded});
+        if (before.row != by.row) changed.push_back({point, before});
         if (had) ++was;
     }
     changed.insert(changed.end(), was, were.end());
@@ -107,11 +121,12 @@ std::vector<TouchPoints::Carried> TouchPoints::carry_beside(const Aggregate& mat
 
 std::vector<TouchPoints::Carried> TouchPoints::connections_changed(const Aggregate& matter) {
     const Lattice& lattice = matter.lattice;
-    whole_ = whole_cells(matter);
+    std::vector<char> whole = whole_cells(matter);
     meets_.assign(points_.size(), 0);
-    for (std::size_t p = 0; p < own_; ++p) meets_[p] = carrier_[p] < 0 || whole_[carrier_[p]];
+    for (std::size_t p = 0; p < own_; ++p) meets_[p] = carrier_[p] < 0 || whole[carrier_[p]];
     std::vector<Carried> changed;
     if (beside_cuts_) changed = carry_beside(matter);
+    whole_ = std::move(whole);
     if (std::find(whole_.begin(), whole_.end(), 0) == whole_.end()) return changed;
     for_each_open_face(lattice, whole_, [&](const CellRun& run, int n, int face) {
         const Vec3i site(run.i + n, run.j, run.k);

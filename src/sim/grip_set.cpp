@@ -14,22 +14,43 @@ GripSet::GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimS
       body_(body),
       of_layer_(settings.grip_stiffness),
       layer_(matter, matter.surface, settings.solver) {
-    connections_changed(matter);
+    // As grips took hold of them: by what they are as molded.
+    carry_points(matter, [](std::size_t, const PointCarriage& molded) { return molded; });
 }
 
 void GripSet::connections_changed(const Aggregate& matter) {
+    const std::vector<char> let_go = torn_;
+    carry_points(matter, [&](std::size_t point, PointCarriage by) {
+        const SurfacePoints& before = points(matter);
+        if (before.row(point) == by.row) {
+            by.place = before.place(point);
+        } else if (!let_go.empty() && let_go[point]) {
+            by.is_whole = false;
+        } else {
+            by = brought_to(before.position(point, matter.particle_position), matter, by);
+        }
+        return by;
+    });
+}
+
+// `carriage`: of a point that another cell holds than as molded, from that as molded.
+template <typename Carriage>
+void GripSet::carry_points(const Aggregate& matter, const Carriage& carriage) {
     torn_.clear();
     std::shared_ptr<SurfacePoints> beside;
     for_each_grip([&](std::size_t, const Grip& grip) {
         const std::vector<PointCarriage> holder = holders(grip, matter);
         for (std::size_t n = 0; n < holder.size(); ++n) {
             const auto point = static_cast<std::size_t>(grip.point[n]);
-            if (!holder[n].is_whole) {
+            PointCarriage by = holder[n];
+            const bool by_another = by.is_whole && by.row != matter.surface.row(point);
+            if (by_another) by = carriage(point, by);
+            if (!by.is_whole) {
                 torn_.resize(matter.surface.size(), 0);
                 torn_[point] = 1;
-            } else if (holder[n].row != matter.surface.row(point)) {
+            } else if (by_another) {
                 if (!beside) beside = std::make_shared<SurfacePoints>(matter.surface);
-                carry(*beside, point, holder[n]);
+                carry(*beside, point, by);
             }
         }
     });

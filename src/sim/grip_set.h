@@ -94,6 +94,8 @@ class GripSet {
     const SurfacePoints& points(const Aggregate& matter) const {
         return beside_ ? *beside_ : matter.surface;
     }
+    template <typename Carriage>
+    void carry_points(const Aggregate& matter, const Carriage& carriage);
     void find_limits(const Aggregate& matter);
     double stiffness(const Aggregate& matter, int point) const;  // of a whole patch [N/m]
     // Of the grip's n-th point [N/m].

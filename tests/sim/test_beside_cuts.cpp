@@ -177,6 +177,49 @@ TEST_CASE("a grip that ends at a cut holds one side alone, and goes on so from a
     CHECK(after.x == force.x);
 }
 
+TEST_CASE("a cut through bent matter neither moves what a grip holds nor loads it") {
+    const double lean = GENERATE(0.0, 0.3);
+    Aggregate bar = make_block(6, 3, 3, kA, kSoft);
+    Apparatus apparatus;
+    apparatus.grip.push_back(
+        hold(bar, points_where(bar, [&](const Vec3& x) { return std::abs(x.y()) > 0.1499; })));
+    Grip& grip = apparatus.grip.front();
+    GripSet grips(bar, apparatus, {}, 0);
+    const auto cut = [&](double x) {
+        sever_plane(bar, Vec3(x, 0, 0), Vec3(1, -lean, 0).normalized());
+    };
+    cut(0.03);
+    deform(bar, [](const Vec3& x) {
+        return Vec3(x.x() + x.y() * x.y(), x.y() * (1 + 2 * x.x()) + 2 * x.x() * x.x(), x.z());
+    });
+    for (std::size_t n = 0; n < grip.point.size(); ++n) {
+        grip.anchor[n] = bar.surface_position(std::size_t(grip.point[n]));
+    }
+    const Drive now = drive_of(apparatus, 0, 1);
+    const auto held = [&] {
+        std::vector<HeldPoint> all;
+        grips.add_held_points(bar, now, all);
+        return all.size();
+    };
+    const double as_much = kSoft.young_modulus * std::pow(kA, 3);
+    REQUIRE(grips.stored_energy(bar, now) < 1e-20 * as_much);
+    grips.connections_changed(bar);
+    CHECK(grips.stored_energy(bar, now) < 1e-11 * as_much);  // places in cells are floats
+    CHECK(held() == grip.point.size());
+    // Nor does another, which takes from some what has held them since.
+    deform(bar, [](const Vec3& x) { return Vec3(x.x(), x.y(), x.z() + 0.2 * x.x() * x.y()); });
+    const double before = grips.stored_energy(bar, now);
+    const auto points = held();
+    Aggregate flat = make_block(6, 3, 3, kA, kSoft);
+    std::swap(flat.particle_position, bar.particle_position);
+    cut(0.13);
+    std::swap(flat.particle_position, bar.particle_position);
+    grips.connections_changed(bar);
+    CHECK(before > 1e-6 * as_much);
+    CHECK(grips.stored_energy(bar, now) < 1.001 * before);
+    CHECK(held() > points / 2);
+}
+
 namespace {
 
 // What two pins, to either side of a cut, have braked a falling block by [m/s], and what is not
