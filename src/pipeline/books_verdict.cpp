@@ -118,6 +118,14 @@ std::string fracture_text(const StageEnd& end, double by_fracture, double share)
         by_fracture, 100 * share, mixed ? ", those of two unlike materials most" : "");
 }
 
+std::string cut_text(double by_cuts, double share) {
+    return fmt::format(
+        "the energy books do not close: cutting has given {:.3g} J, {:.3g} % of the energy "
+        "involved is from nowhere, and it should only take some: try smaller cells or, where a "
+        "stage before has pressed or drawn the matter far, remold = true",
+        by_cuts, 100 * share);
+}
+
 // The energy involved [J]: what the bodies began with and were given, what the books hold by now or
 // the most that was stored on the way. What contacts held at the start and were let go of has no
 // part in it: it is booked as what is gone, and may be far more than all that the stage does.
@@ -130,10 +138,11 @@ double in_play(const Books& first, const Books& b, double stored) {
     return std::max({in, out, stored});
 }
 
-// The share of that which is missing or too much. Fracture and flow take energy: what they give is
-// from nowhere.
+// The share of that which is missing or too much. Cuts, fracture and flow take energy: what they
+// give is from nowhere.
 double unaccounted(double play, const Books& b, double least, double by_flow) {
-    const double gap = b.remainder + std::min(0.0, b.fracture) - by_flow;
+    const double gap =
+        b.remainder + std::min(0.0, b.fracture) + std::min(0.0, b.severed_energy) - by_flow;
     return play > least && std::abs(gap) > least ? gap / play : 0;
 }
 
@@ -185,10 +194,13 @@ std::vector<std::string> judge_books(const StageEnd& end) {
     const double taken = end.last.friction + end.last.plastic;
     // At rest, what snaps or slips through is lost, and no mistake.
     const bool is_open = in_motion(sim.solver) ? std::abs(share) > kMostGain : share < -kMostGain;
-    const double by_fracture = std::max(0.0, -end.last.fracture);
-    if (is_open && share < 0 && std::max(by_flow, by_fracture) > -end.last.remainder) {
-        told.push_back(by_flow > by_fracture ? flow_text(end, by_flow, -share)
-                                             : fracture_text(end, by_fracture, -share));
+    const double by_fracture = std::max(0.0, -end.last.fracture),
+                 by_cuts = std::max(0.0, -end.last.severed_energy),
+                 most = std::max({by_flow, by_fracture, by_cuts});
+    if (is_open && share < 0 && most > -end.last.remainder) {
+        told.push_back(most == by_cuts       ? cut_text(by_cuts, -share)
+                       : most == by_fracture ? fracture_text(end, by_fracture, -share)
+                                             : flow_text(end, by_flow, -share));
     } else if (is_open) {
         told.push_back(
             fmt::format("the energy books do not close: {:.3g} % of the energy involved is {}; {}",

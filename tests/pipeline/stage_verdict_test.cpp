@@ -258,6 +258,18 @@ TEST_CASE("energy that fracture gives is told as what it is") {
     CHECK(bar.told(-work, -work).find("fracture") == std::string::npos);
 }
 
+TEST_CASE("energy that cutting gives is told as what it is") {
+    CutBar bar("glass");
+    const double work = 1e-6 * bar.stiffness();
+    const auto told = [&](double energy) {
+        return told_of_taken(bar, work, &FrameReport::severed_energy, energy);
+    };
+    CHECK_FALSE(is_open(told(0.3 * work)));
+    CHECK_FALSE(is_open(told(-0.01 * work)));
+    CHECK(is_open(told(-0.3 * work)));
+    CHECK(told(-0.3 * work).find("cutting has given") != std::string::npos);
+}
+
 TEST_CASE("volume that flow has changed in a stage is told, what pressure changes is not") {
     const bool springs = GENERATE(true, false);
     const auto told_after = [&](double size, double flowed) {
