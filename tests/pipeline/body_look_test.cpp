@@ -12,6 +12,7 @@
 #include "tests/shared/scratch.h"
 
 using namespace swage;
+using namespace swage::test;
 
 namespace {
 

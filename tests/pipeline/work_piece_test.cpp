@@ -49,7 +49,9 @@ InputMesh read_from_file(const TriMesh& mesh) {
     const Scratch scratch;
     const std::filesystem::path file = scratch.path() / "mesh.obj";
     write_obj(file, mesh);
-    return read_input_mesh({file, {}}, MoldKind::shape);
+    MeshSpec spec;
+    spec.file = file;
+    return read_input_mesh(spec, MoldKind::shape);
 }
 
 // Round a quarter of a ring: the box is as high as it is long then.
