@@ -64,6 +64,8 @@ void set_view(const ViewArguments& given, RenderSettings& settings) {
                         angle(given.elevation, usual.elevation, settings.open.elevation),
                         given.zoom, radians(given.turn)};
     if (given.eye.empty() && !given.target.empty()) change.target = place(given.target);
+    change.follows = given.follow;
+    settings.follow = given.follow || (settings.follow && !given.no_follow && given.target.empty());
     if (change.any() && stands_at_eye(settings.camera)) {
         log_info("the camera options replace the scene's eye and target");
     }
@@ -123,6 +125,11 @@ void add_view_arguments(CLI::App& command, ViewArguments& given) {
          {"--camera-azimuth", "--camera-elevation", "--camera-zoom", "--camera-turn"}) {
         eye->excludes(command.get_option(other));
     }
+    CLI::Option* follow = command.add_flag("--camera-follow", given.follow,
+                                           "let the camera go along with the bodies");
+    follow->excludes(target);
+    command.add_flag("--no-camera-follow", given.no_follow, "let it stand as it does without")
+        ->excludes(follow);
     command.add_option("--camera-up", given.up, "axis that points upward in the pictures")
         ->check(CLI::IsMember(std::vector<std::string>(kUpName.begin() + 1, kUpName.end())));
     command

@@ -17,6 +17,7 @@ struct ViewArguments {
     std::optional<double> zoom, turn, field_of_view;       // degrees
     std::optional<double> light_azimuth, light_elevation;  // likewise
     std::vector<double> eye, target;                       // [m]
+    bool follow = false, no_follow = false;
 };
 
 // CLI::Range lets "nan" pass.

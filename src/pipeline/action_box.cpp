@@ -36,6 +36,13 @@ class Outline {
             point_[d] = p;
         }
     }
+    void grow(const Outline& other) {
+        for (std::size_t d = 0; d < direction_.size(); ++d) {
+            if (!(other.reach_[d] > reach_[d])) continue;
+            reach_[d] = other.reach_[d];
+            point_[d] = other.point_[d];
+        }
+    }
     bool empty() const { return !(reach_.front() > -std::numeric_limits<double>::infinity()); }
     const std::vector<Vec3>& points() const { return point_; }
 
@@ -151,13 +158,35 @@ class FramedSkin {
     std::vector<Last> last_;  // a body each
 };
 
-}  // namespace
+// Where the bodies are in each frame, for a camera that goes along: the middle of what is framed,
+// as a mean over three windows, which is nearly one weighted by a bell.
+std::vector<Vec3> calm_way(const std::vector<Box>& skin, double calm) {
+    std::vector<Vec3> way;
+    for (const Box& box : skin) {
+        way.push_back(!box.empty() ? box.center() : way.empty() ? Vec3(0, 0, 0) : way.back());
+    }
+    const int reach = static_cast<int>(std::lround(calm)), last = static_cast<int>(way.size()) - 1;
+    for (int pass = 0; pass < 3; ++pass) {
+        const std::vector<Vec3> before = way;
+        for (int f = 0; f <= last; ++f) {
+            way[f].setZero();
+            for (int n = f - reach; n <= f + reach; ++n) way[f] += before[std::clamp(n, 0, last)];
+            way[f] /= 2 * reach + 1;
+        }
+    }
+    return way;
+}
 
-ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world) {
-    Box skin, machines;
-    Outline outline;
+// What a picture of each frame has to show.
+struct Extents {
+    std::vector<Box> skin;
+    std::vector<Outline> outline;                // of that
+    std::vector<std::vector<Vec3>> tool_corner;  // of the boxes of all tools
+};
+
+Extents extents_of(const FrameStore& store, const Quat& drawn_from_world) {
+    Extents extents;
     FramedSkin framed_skin(store);
-    std::vector<Vec3> tool_corners;
     std::vector<std::vector<Box>> part_box;  // of each machine's parts, in their own frames
     for (int m = 0; m < store.machine_count(); ++m) {
         part_box.emplace_back();
@@ -169,37 +198,81 @@ ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_fro
     }
     for (int f = 0; f < store.frame_count(); ++f) {
         const StoredFrame frame = store.frame(f);
+        Box& skin = extents.skin.emplace_back();
+        Outline& outline = extents.outline.emplace_back();
         framed_skin.for_each(frame, [&](const Vec3& world) {
             const Vec3 p = drawn_from_world * world;
             skin.grow(p);
             outline.grow(p);
         });
+        std::vector<Vec3>& corners = extents.tool_corner.emplace_back();
         if (part_box.empty()) continue;  // no machine at all
         const std::vector<Box>& boxes = part_box.at(static_cast<std::size_t>(frame.machine));
         for (std::size_t b = 0; b < boxes.size() && b < frame.pose.size(); ++b) {
             if (boxes[b].empty()) continue;
             for (int corner = 0; corner < 8; ++corner) {
-                const Vec3 at = drawn_from_world * (frame.pose[b] * boxes[b].corner(corner));
-                machines.grow(at);
-                tool_corners.push_back(at);
+                corners.push_back(drawn_from_world * (frame.pose[b] * boxes[b].corner(corner)));
             }
         }
     }
-    ActionBox action{skin, skin.empty() ? 0 : skin.low.y(), {}};
-    if (!outline.empty()) action.outline = outline.points();
-    if (!tools || machines.empty() || skin.empty()) return action;
-    // A tool that waits far away, or is very long, must not make the work-piece small.
-    const Vec3 reach = Vec3::Constant(kReach * skin.size().maxCoeff());
-    action.bounds.grow(machines.low.cwiseMax(skin.low - reach).cwiseMin(skin.high));
-    action.bounds.grow(machines.high.cwiseMin(skin.high + reach).cwiseMax(skin.low));
-    // The ground does not cut through what stands a little lower, seen or not.
-    const double deep = skin.low.y() - kDeep * skin.size().maxCoeff();
-    action.ground_height =
-        machines.low.y() > deep ? std::min(machines.low.y(), skin.low.y()) : action.bounds.low.y();
-    for (const Vec3& corner : tool_corners) {
-        outline.grow(corner.cwiseMax(action.bounds.low).cwiseMin(action.bounds.high));
+    return extents;
+}
+
+// Seen from where the bodies are in each frame. Of tools as much counts as lies near them then.
+FramedAction framed_along(const Extents& extents, bool tools, double calm) {
+    FramedAction framed;
+    framed.way = calm_way(extents.skin, calm);
+    Outline all;
+    const auto add = [&](const Vec3& p) {
+        framed.bounds.grow(p);
+        all.grow(p);
+    };
+    for (std::size_t f = 0; f < framed.way.size(); ++f) {
+        const Box& skin = extents.skin[f];
+        if (skin.empty()) continue;
+        for (const Vec3& p : extents.outline[f].points()) add(p - framed.way[f]);
+        if (!tools) continue;
+        const Vec3 reach = Vec3::Constant(kReach * skin.size().maxCoeff());
+        for (const Vec3& p : extents.tool_corner[f]) {
+            const Vec3 near = p.cwiseMax(skin.low - reach).cwiseMin(skin.high + reach);
+            add(near - framed.way[f]);
+        }
     }
-    action.outline = outline.points();
+    if (!all.empty()) framed.outline = all.points();
+    return framed;
+}
+
+}  // namespace
+
+ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world,
+                      double calm) {
+    const Extents extents = extents_of(store, drawn_from_world);
+    Box skin, machines;
+    Outline outline;
+    for (const Box& one : extents.skin) skin.grow(one);
+    for (const Outline& one : extents.outline) outline.grow(one);
+    for (const std::vector<Vec3>& corners : extents.tool_corner) {
+        for (const Vec3& corner : corners) machines.grow(corner);
+    }
+    ActionBox action{skin, skin.empty() ? 0 : skin.low.y(), {}};
+    if (tools && !machines.empty() && !skin.empty()) {
+        // A tool that waits far away, or is very long, must not make the work-piece small.
+        const Vec3 reach = Vec3::Constant(kReach * skin.size().maxCoeff());
+        action.bounds.grow(machines.low.cwiseMax(skin.low - reach).cwiseMin(skin.high));
+        action.bounds.grow(machines.high.cwiseMin(skin.high + reach).cwiseMax(skin.low));
+        // The ground does not cut through what stands a little lower, seen or not.
+        const double deep = skin.low.y() - kDeep * skin.size().maxCoeff();
+        action.ground_height = machines.low.y() > deep ? std::min(machines.low.y(), skin.low.y())
+                                                       : action.bounds.low.y();
+        for (const std::vector<Vec3>& corners : extents.tool_corner) {
+            for (const Vec3& corner : corners) {
+                outline.grow(corner.cwiseMax(action.bounds.low).cwiseMin(action.bounds.high));
+            }
+        }
+    }
+    action.framed = {action.bounds, {}, {}};
+    if (!outline.empty()) action.framed.outline = outline.points();
+    if (calm > 0) action.framed = framed_along(extents, tools, calm);
     return action;
 }
 

@@ -2,9 +2,8 @@
 // What the pictures of a run frame.
 #pragma once
 
-#include <vector>
-
 #include "pipeline/frame_store.h"
+#include "render/framed_action.h"
 
 namespace swage {
 
@@ -13,10 +12,12 @@ namespace swage {
 // body's surface may leave the picture: chips fly far.
 struct ActionBox {
     Box bounds;
-    double ground_height = 0;   // y
-    std::vector<Vec3> outline;  // points that together reach as far as the action
+    double ground_height = 0;  // y
+    FramedAction framed;
 };
-// As drawn, with y up.
-ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world);
+// As drawn, with y up. `calm`: where the camera goes along with the bodies, the frames over which
+// it gathers way and slows down; 0: it stays.
+ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world,
+                      double calm = 0);
 
 }  // namespace swage

@@ -176,7 +176,7 @@ ChosenView choose_view(const FrameStore& store, const RenderSettings& settings,
         RenderSettings plain;
         plain.camera = keys;
         for (CameraKey& key : plain.camera) key.zoom = 1, key.target.reset();
-        return film.from(CameraPath(plain, action.bounds, action.outline), keys);
+        return film.from(CameraPath(plain, action.framed), keys);
     };
     const Sight before = sight_from(settings.camera);
     ChosenView chosen{settings.camera, before.worst.share(), before.worst.share()};

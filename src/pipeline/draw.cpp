@@ -247,8 +247,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     const RenderSettings& settings = shot.settings;
     const ActionBox& action = shot.action;
     const bool has_legend = look && settings.legend;
-    Renderer renderer(settings, action.bounds, action.ground_height, thread_count(),
-                      action.outline);
+    Renderer renderer(settings, action.bounds, action.ground_height, thread_count(), action.framed);
     log_verbose("drawing by {}", renderer.renderer_string());
     DrawOutcome outcome = outcome_of(shot, frames, renderer, look);
     FrameSource source(store, shot, look ? &*look : nullptr);

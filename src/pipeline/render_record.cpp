@@ -66,6 +66,7 @@ Json render_json(const RenderSettings& settings) {
         {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
         {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
     if (!rate.is_whole()) json["frame_rate"] = {rate.frames, rate.seconds};
+    if (settings.follow) json["camera_follow"] = true;
     if (settings.first_frame != 1) json["first_frame"] = settings.first_frame;
     if (settings.open.any()) {
         Json& open = json["camera_auto"] = Json::array();
@@ -130,6 +131,7 @@ RenderSettings render_settings_of(const Json& record) {
         settings.light.elevation = json.at("light").at("elevation").get<double>();
         settings.camera.clear();
         for (const Json& key : json.at("camera")) settings.camera.push_back(camera_key_of(key));
+        settings.follow = json.value("camera_follow", false);
         for (const Json& angle : json.value("camera_auto", Json::array())) {
             settings.open.azimuth |= angle == "azimuth";
             settings.open.elevation |= angle == "elevation";

@@ -5,6 +5,12 @@
 
 namespace swage {
 
+namespace {
+
+constexpr double kCalm = 0.15;  // [s] of film, over which a camera that goes along gathers way
+
+}  // namespace
+
 // The axes take turns.
 Quat drawn_from_up(Up up) {
     Mat3 turn = Mat3::Identity();
@@ -23,7 +29,8 @@ Shot shot_of(const FrameStore& store, const RenderSettings& wanted) {
             if (*place) *place = turn * **place;
         }
     }
-    Shot shot{turn, std::move(settings), find_action(store, wanted.tools, turn), {}};
+    const double calm = wanted.follow ? kCalm * wanted.frame_rate.value() : 0;
+    Shot shot{turn, std::move(settings), find_action(store, wanted.tools, turn, calm), {}};
     if (shot.settings.open.any()) {
         shot.chosen = choose_view(store, shot.settings, shot.action, turn);
         shot.settings.camera = shot.chosen->camera;

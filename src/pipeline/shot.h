@@ -18,7 +18,7 @@ struct Shot {
     ActionBox action;                  // as drawn
     std::optional<ChosenView> chosen;  // where angles of the camera were open
 
-    CameraPath camera() const { return {settings, action.bounds, action.outline}; }
+    CameraPath camera() const { return {settings, action.framed}; }
 };
 Quat drawn_from_up(Up up);  // from the world
 Shot shot_of(const FrameStore& store, const RenderSettings& wanted);

@@ -133,9 +133,11 @@ double still_share(const std::vector<CameraKey>& keys, int still, int count) {
     return steps > 0 ? static_cast<double>(still) / steps : 0;
 }
 
-CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds,
-                       std::vector<Vec3> outline)
-    : bounds_(sensible(action_bounds)), outline_(std::move(outline)), lens_(lens_of(settings)) {
+CameraPath::CameraPath(const RenderSettings& settings, FramedAction action)
+    : bounds_(sensible(action.bounds)),
+      outline_(std::move(action.outline)),
+      way_(std::move(action.way)),
+      lens_(lens_of(settings)) {
     if (outline_.empty()) outline_ = corners_of(bounds_);
     std::vector<CameraKey> keys = settings.camera;
     if (keys.empty()) keys.emplace_back();
@@ -206,7 +208,18 @@ View CameraPath::orbit(const std::vector<double>& value) const {
 View CameraPath::at(double film_share) const {
     const std::vector<double> v = interpolated(film_share);
     if (by_eye_) return look_at({v[0], v[1], v[2]}, {v[3], v[4], v[5]});
-    return orbit(v);
+    View view = orbit(v);
+    view.eye += gone(film_share);
+    return view;
+}
+
+Vec3 CameraPath::gone(double film_share) const {
+    if (way_.empty()) return Vec3::Zero();
+    const double last = static_cast<double>(way_.size() - 1);
+    const double at = film_share * (last + comes_round_);  // as still_share() has it
+    const double before = std::clamp(std::floor(at), 0.0, last), next = std::min(before + 1, last);
+    const double share = std::clamp(at - before, 0.0, 1.0);
+    return (1 - share) * way_[std::size_t(before)] + share * way_[std::size_t(next)];
 }
 
 }  // namespace swage

@@ -5,6 +5,7 @@
 
 #include "base/math.h"
 #include "geometry/box.h"
+#include "render/framed_action.h"
 #include "render/glm_bridge.h"
 #include "render/settings.h"
 
@@ -66,10 +67,9 @@ double still_share(const std::vector<CameraKey>& keys, int still, int count);
 // eyes and targets and fly straight between them.
 class CameraPath {
   public:
-    // `outline`: points that together reach as far as the action does in every direction; none: the
-    // corners of the bounds.
-    CameraPath(const RenderSettings& settings, const Box& action_bounds,
-               std::vector<Vec3> outline = {});
+    CameraPath(const RenderSettings& settings, FramedAction action);
+    CameraPath(const RenderSettings& settings, const Box& action_bounds)
+        : CameraPath(settings, FramedAction{action_bounds}) {}
     View at(double film_share) const;
 
   private:
@@ -77,9 +77,10 @@ class CameraPath {
     // action.
     View orbit(const std::vector<double>& value) const;
     std::vector<double> interpolated(double film_share) const;
+    Vec3 gone(double film_share) const;  // along the way
 
     Box bounds_;
-    std::vector<Vec3> outline_;
+    std::vector<Vec3> outline_, way_;
     Lens lens_;
     bool by_eye_;  // a key's values are eye and target; else those of an orbit
     bool comes_round_;

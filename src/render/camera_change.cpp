@@ -36,6 +36,7 @@ std::vector<CameraKey> changed_camera(std::vector<CameraKey> keys, const CameraC
         if (change.elevation) key.elevation = *change.elevation;
         if (change.zoom) key.zoom = *change.zoom;
         if (change.target) key.target = change.target;
+        if (change.follows) key.target.reset();
     }
     return keys;
 }

@@ -15,7 +15,8 @@ struct CameraChange {
     std::optional<double> elevation = {}, zoom = {};  // all through the flight
     std::optional<double> turn = {};                  // how far it goes round, evenly
     std::optional<Vec3> target = {};                  // looked at all through the flight [m]
-    bool any() const { return azimuth || elevation || zoom || turn || target; }
+    bool follows = false;                             // the bodies, whatever it looks at else
+    bool any() const { return azimuth || elevation || zoom || turn || target || follows; }
 };
 
 bool stands_at_eye(const std::vector<CameraKey>& keys);  // at any of them

@@ -64,12 +64,12 @@ glm::vec4 plane_of(const DrawItem& item, const Stage& stage) {
 
 struct Renderer::Parts {
     Parts(const RenderSettings& wanted, const Box& bounds, double ground, int threads,
-          std::vector<Vec3> outline)
+          std::optional<FramedAction> framed)
         : settings(wanted),
           action_bounds(bounds),
           ground_height(ground),
           stage(bounds),
-          camera(wanted, bounds, std::move(outline)),
+          camera(wanted, framed ? std::move(*framed) : FramedAction{bounds}),
           canvas(wanted.gl, threads),
           gl(canvas.gl()),
           meshes(gl),
@@ -397,9 +397,9 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
 }
 
 Renderer::Renderer(const RenderSettings& settings, const Box& action_bounds, double ground_height,
-                   int threads, std::vector<Vec3> outline)
+                   int threads, std::optional<FramedAction> framed)
     : parts_(std::make_unique<Parts>(settings, action_bounds, ground_height, threads,
-                                     std::move(outline))) {}
+                                     std::move(framed))) {}
 
 Renderer::~Renderer() {
     try {

@@ -9,6 +9,7 @@
 
 #include "base/stopwatch.h"
 #include "geometry/trimesh.h"
+#include "render/framed_action.h"
 #include "render/image.h"
 #include "render/layers.h"
 #include "render/settings.h"
@@ -34,10 +35,10 @@ class Renderer {
   public:
     // `action_bounds`: the box of the whole motion, tools too, in the world (y up) [m].
     // `threads`: of the software rasteriser, 0 for all cores; the first Renderer of the process
-    // decides. `outline`: points that together reach as far as the motion does, for a closer
-    // framing than the box's. Throws Error(output) when there is nothing to draw with.
+    // decides. `framed`: by the camera; none: that box. Throws Error(output) when there is nothing
+    // to draw with.
     Renderer(const RenderSettings& settings, const Box& action_bounds, double ground_height,
-             int threads = 0, std::vector<Vec3> outline = {});
+             int threads = 0, std::optional<FramedAction> framed = {});
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;

@@ -63,6 +63,7 @@ struct RenderSettings {
     double field_of_view = 0.6;                     // vertical, 0 to pi exclusive
     std::vector<CameraKey> camera = {CameraKey{}};  // sorted by `at`
     OpenAngles open;                                // of that
+    bool follow = false;                            // the camera goes along with the bodies
     FrameRate frame_rate;                           // of the film
     int first_frame = 1;                            // what the first is called, from 1 on
     bool film = true;                               // also write film.mp4, of what is not clear

@@ -275,7 +275,9 @@ constexpr KeyHelp kSceneKeys[] = {
     {"[render.camera]", "orbit",
      "angle by which azimuth turns over the film; whole turns keep a constant pace and end one "
      "step short of the first still"},
-    {"[render.camera]", "keys", "in place of the above: the same keys at several times"},
+    {"[render.camera]", "follow",
+     "go along with the bodies, whose largest extent zoom = 1 frames then; not with a target"},
+    {"[render.camera]", "keys", "in place of the above but follow: the same keys at several times"},
     {"[[render.camera.keys]]", "at", "fraction of the film", {}, "-"},
     {"[[render.camera.keys]]", "azimuth", "as in [render.camera]"},
     {"[[render.camera.keys]]", "elevation", "as in [render.camera]", "angle, -90 deg to 90 deg"},

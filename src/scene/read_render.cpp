@@ -120,10 +120,11 @@ void read_camera(TableReader& table, std::vector<CameraKey>& camera, OpenAngles&
     }
     const bool has_keys = table.find("keys") != nullptr;
     const std::vector<const Node*> keys = table.tables("keys", "[[render.camera.keys]]");
-    if (has_keys && table.has_other_keys("keys")) {
+    if (has_keys && table.has_other_keys({"keys", "follow"})) {
         table.mistake(
             "keys",
-            "keys must stand alone in [render.camera]: put the other settings into each key");
+            "keys must stand alone in [render.camera], or beside follow: put the other settings "
+            "into each key");
     }
     if (!has_keys) {
         camera = {fixed};
@@ -190,6 +191,12 @@ void read_render(TableReader& table, RenderSettings& settings) {
     table.quantity("field_of_view", Quantity::angle, inside(0, kPi), settings.field_of_view);
     TableReader camera(table.table("camera"), "[render.camera]", table.reading());
     read_camera(camera, settings.camera, settings.open);
+    const auto looks_elsewhere = [](const CameraKey& key) { return key.target.has_value(); };
+    if (camera.truth("follow", settings.follow) && settings.follow &&
+        std::ranges::any_of(settings.camera, looks_elsewhere)) {
+        camera.mistake("follow",
+                       "follow looks at the bodies, and cannot be used with an eye or a target");
+    }
     camera.finish();
     TableReader light(table.table("light"), "[render.light]", table.reading());
     read_light(light, settings.light);

@@ -342,9 +342,9 @@ std::vector<const Node*> TableReader::tables(const std::string& key, const std::
     return found;
 }
 
-bool TableReader::has_other_keys(const std::string& than) const {
+bool TableReader::has_other_keys(const std::set<std::string>& than) const {
     return std::any_of(node_.entry.begin(), node_.entry.end(),
-                       [&](const Entry& entry) { return entry.key != than; });
+                       [&](const Entry& entry) { return !than.contains(entry.key); });
 }
 
 void TableReader::tell_known() {

@@ -120,7 +120,7 @@ class TableReader {
     const Place& place() const { return node_.place; }
     // What is looked up from now on belongs to this narrower section ("[[stage]] with ...").
     void narrow(std::string section);
-    bool has_other_keys(const std::string& than) const;
+    bool has_other_keys(const std::set<std::string>& than) const;
     Reading& reading() { return reading_; }
 
   private:

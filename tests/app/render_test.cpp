@@ -241,6 +241,12 @@ TEST_CASE("a drawing tells which view it chose for angles that nobody gave") {
     CHECK(view({"--camera-elevation", "50"}).at("elevation").get<double>() == Approx(0.8726646));
     CHECK(view({"--camera-azimuth", "90", "--camera-elevation", "50"}).is_null());
     CHECK(view({"--camera-eye", "1", "1", "1", "--camera-target", "0", "0", "0"}).is_null());
+    // What follows frames another part of the picture, and needs no other view than it has.
+    CHECK(view({"--camera-follow"}).at("seen").get<double>() > 0.5);
+    CHECK(drawable.draw(drawable.out(), {"--camera-follow", "--no-camera-follow"}).code == 2);
+    CHECK(
+        drawable.draw(drawable.out(), {"--camera-follow", "--camera-target", "0", "0", "0"}).code ==
+        2);
     // As where nobody gives them, whatever stood there before.
     CHECK(view({"--camera-azimuth", "auto", "--camera-elevation", "auto"}) == chosen);
     CHECK(view({"--camera-azimuth", "90", "--camera-elevation", "auto"}) ==

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/action_box.h"
 
+#include <cmath>
+
 #include "geometry/box_mesh.h"
+#include "render/camera.h"
 #include "tests/catch.h"
 #include "tests/shared/scratch.h"
 
@@ -57,7 +60,8 @@ TEST_CASE("the picture shows where tools are, but no end of what is endless") {
     const auto widest = [&](Finish finish) {
         slab.finish = finish;
         double most = 0;
-        for (const Vec3& p : action_of(1, 2, false, {slab}).outline) most = std::max(most, p.z());
+        for (const Vec3& p : action_of(1, 2, false, {slab}).framed.outline)
+            most = std::max(most, p.z());
         return most;
     };
     CHECK(widest(Finish::metal) > 1.1);
@@ -70,4 +74,59 @@ TEST_CASE("tools that reach a little lower than the work-piece stand on the grou
     CHECK(action_of(1, 2, false, {post}).ground_height == Approx(-0.8));
     post.surface = box_mesh(Vec3(0, -80, 0), Vec3(0.1, 1.2, 0.1));
     CHECK(action_of(1, 2, false, {post}).ground_height > -3);
+}
+
+TEST_CASE("a camera that goes along frames the bodies as large as they are, and does not jerk") {
+    // A cube of 1 m falls by 20 m, beside a post that stands, and comes to rest at once.
+    constexpr int kFrames = 61;
+    constexpr double kFall = 20;
+    const TriMesh cube = box_mesh(Vec3::Zero(), Vec3::Ones());
+    const auto height = [](int f) { return kFall * (1 - std::min(1.0, f * f / 1600.0)); };
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion";
+    FrameStoreWriter writer(file);
+    writer.add_skin(cube);
+    DrawnPart post;
+    post.surface = box_mesh(Vec3(2, 0, 0), Vec3(2.1, 40, 0.1));
+    writer.add_machine({post});
+    for (int f = 0; f < kFrames; ++f) {
+        StoredFrame stored;
+        stored.pose.resize(1);
+        stored.body.push_back({0, cube.position});
+        for (Vec3& p : stored.body[0].position) p.y() += height(f);
+        writer.add_frame(stored);
+    }
+    writer.finish();
+    const FrameStore store(file);
+    const ActionBox stays = find_action(store, true, Quat::Identity());
+    const ActionBox goes = find_action(store, true, Quat::Identity(), 4);
+    CHECK(stays.framed.way.empty());
+    CHECK(goes.bounds.low == stays.bounds.low);
+    CHECK(goes.bounds.high == stays.bounds.high);
+    CHECK(goes.ground_height == stays.ground_height);
+    REQUIRE(goes.framed.way.size() == kFrames);
+    CHECK(goes.framed.bounds.size().y() < 6);
+    RenderSettings settings;
+    settings.width = settings.height = 400;
+    const Lens lens = lens_of(settings);
+    const CameraPath path(settings, goes.framed);
+    double largest = 0;
+    for (int f = 0; f < kFrames; ++f) {
+        const View view = path.at(still_share(settings.camera, f, kFrames));
+        for (const Vec3& corner : cube.position) {
+            const Vec3 p = view.in_view(corner + height(f) * Vec3::UnitY());
+            REQUIRE(p.z() < 0);
+            const double reach =
+                std::max(std::abs(p.x()) / lens.tangent_x, std::abs(p.y()) / lens.tangent_y) /
+                -p.z();
+            CHECK(reach < 1);
+            largest = std::max(largest, reach);
+        }
+    }
+    CHECK(largest > 0.5);
+    // A body that stops at once from 0.98 m a frame takes the camera's speed over several.
+    const auto speed = [&](int f) { return (goes.framed.way[f + 1] - goes.framed.way[f]).norm(); };
+    for (int f = 0; f + 2 < kFrames; ++f) CHECK(std::abs(speed(f + 1) - speed(f)) < 0.15);
+    CHECK(speed(0) < 0.05);
+    CHECK((goes.framed.way[kFrames - 1] - Vec3(0.5, 0.5, 0.5)).norm() < 1e-12);
 }

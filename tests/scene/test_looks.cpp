@@ -187,3 +187,25 @@ TEST_CASE(
     CHECK(says(mistakes("texture = \"cow.png\"\nlook = \"material\"\n"),
                "s.toml:4:8: look = \"material\" excludes a texture: give one of them"));
 }
+
+TEST_CASE("a camera follows the bodies, beside keys too, unless it looks elsewhere") {
+    const auto read = [](const std::string& camera) {
+        const SceneFolder scratch;
+        const Parts parts = with(&Parts::rest, "[render.camera]\nfollow = true\n" + camera);
+        return read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
+    };
+    const auto follows = [&](const std::string& camera) {
+        const SceneReading reading = read(camera);
+        return reading.scene && reading.scene->render.follow;
+    };
+    CHECK(follows("azimuth = 1\n"));
+    CHECK(follows("orbit = \"90 deg\"\nzoom = 2\n"));
+    CHECK(follows("keys = [{at = 0, zoom = 1}, {at = 1, zoom = 2}]\n"));
+    for (const char* elsewhere : {"target = [0, 0, 0]\n", "eye = [1, 0, 0]\ntarget = [0, 0, 0]\n",
+                                  "keys = [{at = 0}, {at = 1, target = [0, 0, 0]}]\n"}) {
+        const std::vector<Mistake> mistakes = read(elsewhere).mistakes;
+        REQUIRE(mistakes.size() == 1);
+        CHECK(says(mistake_text(mistakes[0]),
+                   "follow looks at the bodies, and cannot be used with an eye or a target"));
+    }
+}
