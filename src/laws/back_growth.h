@@ -38,11 +38,11 @@ SWAGE_INLINE BackGrown<N> flowed_on(const CellHistory<N>& history, const BackStr
     };
     const auto elastic = [&](const Triple<N>& q, const Triple<N>& beta)
         __attribute__((always_inline)) {
-        return along(r.kept * q + r.lent * beta);
+        return along(r.kept_modes * q + r.lent * beta);
     };
     const auto held = [&](const Triple<N>& q, const Triple<N>& beta)
         __attribute__((always_inline)) {
-        return along(r.gained * q + r.held * beta);
+        return along((r.mode_flow * r.gained) * q + r.held * beta);
     };
     const CellModes<N>&q = r.modes, &beta = back.modes;
     return {

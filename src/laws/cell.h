@@ -34,6 +34,8 @@
 //                               A <- root of A exp(-2 (1 - w) dev E) A
 //                               A q <- w A q,  alpha += d_alpha
 //
+// (of slivers, f < 0.06, q and W_q have no part in it)
+//
 // so that what flows stays elastic strain and stress, and only these, however far it has gone; all
 // tensors of the return are functions of E. The exponential keeps the volume.
 //
@@ -330,6 +332,15 @@ SWAGE_INLINE N mode_fill(const N& fill) {
     return fill * mode_share(fill);
 }
 
+// Whether the modes of a cell flow, 1 or 0. NOTE: what holds a sliver's corners for want of matter
+// is none that could flow. Where it did, corners that no other cell has went off by up to 28 cells
+// as bodies were twisted or pressed far, for that takes the strain off the sliver.
+template <typename N>
+SWAGE_INLINE N mode_flow(const N& fill) {
+    const N lacks = larger(kFlowingFill - fill, 0.0 * fill);
+    return larger(1.0 - 1e300 * lacks, 0.0 * fill);
+}
+
 // What a cell has flowed, committed.
 template <typename N>
 struct CellHistory {
@@ -366,6 +377,7 @@ struct CellFlowed : CellReturn<N> {
     Symmetric<N> distortion;   // dev E before the return
     CellModes<N> modes;        // q before the return
     CellModes<N> mode_stress;  // of these
+    N kept_modes;              // of them, 1 where they do not flow
 };
 
 template <typename N>
@@ -383,9 +395,11 @@ SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>
     r.distortion = deviator(strain);
     r.modes = modes - history.modes;
     r.mode_stress = mode_stress(law, taken_back(history), r.modes);
+    const N flow = mode_flow(fill);
     static_cast<CellReturn<N>&>(r) =
         return_cell(law, contract(r.distortion, r.distortion),
-                    mode_share(fill) * product(r.mode_stress, r.modes), history.alpha);
+                    (flow * mode_share(fill)) * product(r.mode_stress, r.modes), history.alpha);
+    r.kept_modes = 1.0 - flow * (1.0 - r.kept);
     return r;
 }
 

@@ -188,6 +188,7 @@ template <typename N>
 struct BackFlowed : BackReturn<N> {
     Symmetric<N> distortion;
     CellModes<N> modes, mode_stress, back_stress;  // the last: of beta
+    N mode_flow, kept_modes;                       // as CellFlowed
 };
 template <typename N>
 SWAGE_INLINE BackFlowed<N> flow_with_back(const CellModuli& law, const CellHistory<N>& history,
@@ -199,13 +200,15 @@ SWAGE_INLINE BackFlowed<N> flow_with_back(const CellModuli& law, const CellHisto
     r.modes = modes - history.modes;
     r.mode_stress = mode_stress(law, a, r.modes);
     r.back_stress = mode_stress(law, a, back.modes);
-    const N share =
-        (0.5 / (law.shear * law.spacing * law.spacing * law.spacing)) * mode_share(fill);
+    r.mode_flow = mode_flow(fill);
+    const N share = (0.5 / (law.shear * law.spacing * law.spacing * law.spacing)) *
+                    (r.mode_flow * mode_share(fill));
     static_cast<BackReturn<N>&>(r) = return_with_back(
         law, contract(r.distortion, r.distortion) + share * product(r.mode_stress, r.modes),
         contract(r.distortion, back.strain) + share * product(r.back_stress, r.modes),
         contract(back.strain, back.strain) + share * product(r.back_stress, back.modes),
         history.alpha);
+    r.kept_modes = 1.0 - r.mode_flow * (1.0 - r.kept);
     return r;
 }
 
@@ -219,8 +222,8 @@ inline double saved_by_flow(const CellModuli& law, double alpha, const BackStrai
     };
     return energy(r.distortion, r.modes, r.mode_stress) -
            energy(r.kept * r.distortion + r.lent * back.strain,
-                  r.kept * r.modes + r.lent * back.modes,
-                  r.kept * r.mode_stress + r.lent * r.back_stress) -
+                  r.kept_modes * r.modes + r.lent * back.modes,
+                  r.kept_modes * r.mode_stress + r.lent * r.back_stress) -
            r.d_alpha * (mean_flow_stress(law, alpha, r.d_alpha) + r.more);
 }
 

@@ -170,7 +170,11 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
             const CellModes<N> of_beta = mode_stress(k.folded, a, beta);
             const Symmetric<N> distortion = deviator(e.log);
             N part = (-0.5 / (k.law.shear * k.law.spacing * k.law.spacing * k.law.spacing)) + N{};
-            if constexpr (kPart) part = part * mode_share(share.fill);
+            N flow = 1.0 + N{};  // of the modes
+            if constexpr (kPart) {
+                flow = mode_flow(share.fill);
+                part = part * flow * mode_share(share.fill);
+            }
             const BackReturn<N> r = return_with_back(
                 k.law, contract(distortion, distortion) + part * product(g, modes),
                 contract(distortion, back->strain) + part * product(of_beta, modes),
@@ -179,16 +183,20 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
             if (over != nullptr) *over = r.over;
             lent = (shear * r.lent) * back->strain;
             shear = shear * r.kept;
-            g = r.kept * g + r.lent * of_beta;
+            g = (1.0 - flow * (1.0 - r.kept)) * g + r.lent * of_beta;
         } else if constexpr (can_flow(kKind)) {
             const Symmetric<N> distortion = deviator(e.log);
             N mode_energy = -1.0 * product(g, modes);
-            if constexpr (kPart) mode_energy = mode_share(share.fill) * mode_energy;
+            N flow = 1.0 + N{};  // of the modes
+            if constexpr (kPart) {
+                flow = mode_flow(share.fill);
+                mode_energy = flow * mode_share(share.fill) * mode_energy;
+            }
             const CellReturn<N> back = return_cell(k.law, contract(distortion, distortion),
                                                    mode_energy, kFlowed ? history.alpha : N{});
             if (over != nullptr) *over = back.over;
             shear = shear * back.kept;
-            g = back.kept * g;
+            g = (kPart ? 1.0 - flow * (1.0 - back.kept) : back.kept) * g;
         }
         if constexpr (kPart) g = mode_fill(share.fill) * g;
         stress =

@@ -77,7 +77,7 @@ SWAGE_INLINE CellHistory<N> flowed_on(const CellHistory<N>& history, const CellF
     const Symmetric<N> a = taken_back(history), next = flowed_on(a, (1.0 - r.kept) * r.distortion);
     const Symmetric<N> back = inverse_of(next);
     const auto elastic = [&](const Triple<N>& q) __attribute__((always_inline)) {
-        return back * (a * (r.kept * q));
+        return back * (a * (r.kept_modes * q));
     };
     const CellModes<N> all = pulled_back(f * next, c);
     return {plus_unit(next, -1.0),

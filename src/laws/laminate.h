@@ -84,9 +84,9 @@ SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState
     const Columns<N> elastic = f * a;
     const CellStrain<N> e = cell_strain(elastic);
     s.flowed = flow_cell(*m.law, m.history, e.log, s.modes, m.fill);
-    if (m.kind == CellKind::elastic) s.flowed.kept = N{} + 1.0;
+    if (m.kind == CellKind::elastic) s.flowed.kept = s.flowed.kept_modes = N{} + 1.0;
     s.stress = turned_by(elastic, turning) * cell_stress(*m.law, e, s.flowed.kept) * a;
-    s.mode_stress = s.flowed.kept * s.flowed.mode_stress;
+    s.mode_stress = s.flowed.kept_modes * s.flowed.mode_stress;
 }
 
 // The guard of laws/layer_guard.h, of a material whose gradient is `gradient` without the jump.

@@ -87,7 +87,7 @@ struct Crushed {
             const CellFlowed<double> r = flow_cell(*law, history, strain.log, modes, fill);
             static_cast<CellReturn<double>&>(flowed) = r;
             flowed.distortion = r.distortion, flowed.modes = r.modes;
-            flowed.mode_stress = r.mode_stress;
+            flowed.mode_stress = r.mode_stress, flowed.kept_modes = r.kept_modes;
         }
     }
 
@@ -113,7 +113,7 @@ struct Crushed {
             }
             stress -= guard.share * matrix_of(gradient * own) + spent() * guard.share_slope;
             const double part = guard.share * mode_fill(fill);
-            modes = (part * (1 - flowed.kept)) * flowed.mode_stress;
+            modes = (part * (1 - flowed.kept_modes)) * flowed.mode_stress;
             if (shifts) modes = modes - (part * flowed.lent) * flowed.back_stress;
         }
         const Symmetric<double> a = taken_back(history);

@@ -149,8 +149,9 @@ double StrengthUse::yield_share(const Aggregate& matter, const CellRun& run, int
         z = z - back.strain, q = q - back.modes;
     }
     const double volume = law.spacing * law.spacing * law.spacing;
+    const double fill = matter.cell_fill[cell];
     const double modes =
-        mode_share(double(matter.cell_fill[cell])) * product(mode_stress(law, a, q), q) / volume;
+        mode_flow(fill) * mode_share(fill) * product(mode_stress(law, a, q), q) / volume;
     double square = 6 * law.shear * law.shear * contract(z, z) + 3 * law.shear * modes;
     if (history.alpha == 0 && matter.cell_centroid[cell].norm() < kOffCentre) {
         for (int c = 0; c < 8; ++c) {

@@ -131,7 +131,7 @@ TEST_CASE(
     const Scratch scratch;
     TriMesh mesh = bar(true).mesh;
     mesh.position_color.assign(mesh.position.size(), Eigen::Vector3f(1, 0, 0));
-    mesh.material[0].texture = scratch.path() / "gone.png";
+    
     write_obj(scratch.path() / "bar.obj", mesh);
     write_png(scratch.path() / "cow.png", {1, 1, {1, 2, 3}});
     SceneSpec scene;
