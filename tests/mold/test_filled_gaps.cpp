@@ -82,14 +82,19 @@ bool advises(const std::string& told) { return told.find("keeps it open") != std
 
 // Whether the prongs of a fork that stands so share a particle beyond what hangs together.
 bool share_particles(const Aggregate& matter, const Pose& fork, double gap) {
-    constexpr int kPlaces = 8;  // of a cell, along each axis
+    constexpr int kPlaces = 8;      // of a cell, along each axis
+    constexpr double kReach = 0.9;  // of a cell, from its middle, and some more
     const Pose back = fork.inverse();
     std::set<ParticleId> side[2];
     for (CellId cell = 0; cell < CellId(matter.cell_fill.size()); ++cell) {
         const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
         const Vec3 low = matter.particle_reference.at(corner[0]);
+        const Vec3 middle = back * Vec3(low + Vec3::Constant(0.5));
+        if (middle.x() < kRoot + 4 - kReach) continue;
+        const bool reaches[2] = {middle.y() < kProng + kReach, middle.y() > kProng + gap - kReach};
         bool holds[2] = {false, false};
         for (int n = 0; n < kPlaces * kPlaces * kPlaces; ++n) {
+            if (holds[0] >= reaches[0] && holds[1] >= reaches[1]) break;  // all that it can
             const Vec3i step(n % kPlaces, n / kPlaces % kPlaces, n / kPlaces / kPlaces);
             const Vec3 p = back * Vec3(low + (step.cast<double>() + Vec3::Constant(0.5)) / kPlaces);
             if (p.x() < kRoot + 4 || p.x() > kLength || p.z() < 0 || p.z() > kProng) continue;
