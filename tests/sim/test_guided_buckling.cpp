@@ -135,7 +135,7 @@ constexpr double kFixedPinned = 2.0457;  // tan u = u at u^2 = 2.0457 pi^2
 }  // namespace
 
 TEST_CASE("a strut held along some axes buckles at the load that is theirs") {
-    const int cells = GENERATE(3, 4);
+    const int cells = GENERATE(2, 3);
     INFO(cells << " cells across");
     Strut strut(cells);
     SECTION("one end fixed, the other guided along it") {
@@ -143,7 +143,6 @@ TEST_CASE("a strut held along some axes buckles at the load that is theirs") {
         check_buckles(strut, 1);
     }
     SECTION("both guided: it may slide sideways and turn about itself") {
-        if (cells > 3) return;  // 15 s
         strut.hold(-1, kAlong).hold(1, kAlong);
         check_buckles(strut, 1);
     }
@@ -169,7 +168,7 @@ TEST_CASE("a strut that is pressed on after a pause is seen to buckle") {
 }
 
 TEST_CASE("a strut between smooth plates buckles at the load that is theirs") {
-    const int cells = GENERATE(3, 4);
+    const int cells = GENERATE(2, 3);
     INFO(cells << " cells across");
     Strut strut(cells);
     const double deep = 2 * strut.side, part = strut.length / (strut.length - deep);
