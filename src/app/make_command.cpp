@@ -50,10 +50,6 @@ std::string shown(double value, ParameterKind kind) {
 }
 
 void write_shape(const fs::path& file, MadeShape shape) {
-    const std::string ending = file.extension().string();
-    if (ending != ".obj" && ending != ".ply") {
-        fail(ExitCode::command_line, "{}: only .obj and .ply can be written", file.string());
-    }
     FilesBeside picture;
     if (shape.texture && !shape.mesh.material.empty()) {
         const fs::path folder = fs::absolute(file).parent_path();
@@ -62,7 +58,7 @@ void write_shape(const fs::path& file, MadeShape shape) {
                                  encode_png({shape.texture->width, shape.texture->height,
                                              shape.texture->rgb}));
     }
-    ending == ".obj" ? write_obj(file, shape.mesh) : write_ply(file, shape.mesh);
+    file.extension() == ".obj" ? write_obj(file, shape.mesh) : write_ply(file, shape.mesh);
     picture.stay();
 }
 
@@ -79,6 +75,9 @@ int make(const ShapeInfo& info, const MakeArguments& given) {
         }
     }
     const fs::path file = given.out.empty() ? fs::path(info.name + ".obj") : fs::path(given.out);
+    if (file.extension() != ".obj" && file.extension() != ".ply") {
+        fail(ExitCode::command_line, "{}: only .obj and .ply can be written", file.string());
+    }
     const MadeShape shape = make_shape(info.name, parameters);
     write_shape(file, shape);
     log_info("{}: {}", file.string(), summary_line(check_mesh(shape.mesh)));
