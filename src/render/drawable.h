@@ -13,9 +13,10 @@ namespace swage {
 
 // An item, ready to draw.
 struct Drawable {
-    const GpuMesh* mesh;
-    const DrawItem* item;
-    glm::mat4 stage_from_mesh;
+    const DrawItem* item = nullptr;
+    const GpuMesh* mesh = nullptr;
+    glm::mat4 stage_from_mesh = glm::mat4(1);
+    Box casting;         // what of it may cast shadows on the action [stage]; empty: nothing
     bool culls = false;  // closed, and seen from outside: its back faces are left out
 };
 

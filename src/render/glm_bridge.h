@@ -14,5 +14,8 @@ namespace swage {
 
 inline glm::dvec3 to_glm(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 inline glm::dquat to_glm(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+inline Mat3 from_glm(const glm::mat3& m) {
+    return Eigen::Map<const Eigen::Matrix3f>(glm::value_ptr(m)).cast<double>();
+}
 
 }  // namespace swage

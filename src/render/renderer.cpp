@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One picture is five passes: the shadow map; normal and depth at half size; occlusion and shadow
-// from these, blurred; the surfaces in full size with four samples a pixel, each already developed
+// One picture is five passes: normal and depth at half size; shadow maps about what is seen there;
+// occlusion and shadow from these, blurred; the surfaces in full size with four samples a pixel, each already developed
 // to the picture's colours; the mean of the samples. Occlusion is known before the surfaces are
 // lit, so it dims only the light it should. Shading happens once a pixel and surface.
 #include "render/renderer.h"
@@ -109,7 +109,7 @@ struct Renderer::Parts {
         gl.Finish();
     }
 
-    bool extend(Extent& extent, const DrawItem& item, const Vec3& eye) const;
+    bool extend(Extent& extent, Drawable& drawable, const Vec3& eye) const;
     std::vector<Drawable> prepare(const Picture& picture, const Vec3& eye, Extent& extent);
     void draw_surfaces(const std::vector<Drawable>& drawables, bool ground, const Target& target,
                        const SurfaceShaders& by);
@@ -126,7 +126,8 @@ struct Renderer::Parts {
 };
 
 // Returns false for what is not to be drawn: a floor without end, which from below hides everything.
-bool Renderer::Parts::extend(Extent& extent, const DrawItem& item, const Vec3& eye) const {
+bool Renderer::Parts::extend(Extent& extent, Drawable& drawable, const Vec3& eye) const {
+    const DrawItem& item = *drawable.item;
     if (item.endless) {
         const glm::vec4 plane = plane_of(item, stage);
         if (plane.y > 0) {
@@ -146,7 +147,7 @@ bool Renderer::Parts::extend(Extent& extent, const DrawItem& item, const Vec3& e
         const Box reach = action_bounds.widened(kShadowReach * stage.radius);
         own = {own.low.cwiseMax(reach.low), own.high.cwiseMin(reach.high)};
     }
-    if (!own.empty()) extent.casting.grow(own);
+    if (!own.empty()) drawable.casting = stage.box(own);
     return true;
 }
 
@@ -154,20 +155,22 @@ std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, const Vec
                                                Extent& extent) {
     meshes.begin_picture();
     std::vector<Drawable> drawables;
+    extent.shown.grow(action_bounds);
     for (const DrawItem& item : picture.item) {
         if (item.mesh == nullptr || item.mesh->triangle.empty()) continue;
-        if (!extend(extent, item, eye)) continue;
+        Drawable drawable;
+        drawable.item = &item;
+        if (!extend(extent, drawable, eye)) continue;
         // Read now: loading one in the middle of a pass would unbind what the pass has bound.
         if (item.material_override) textures.texture(*item.material_override);
         for (const SurfaceMaterial& material : item.mesh->material) {
             textures.texture(material);
         }
-        const GpuMesh& mesh = meshes.prepared(*item.mesh, item.position);
-        const glm::mat4 stage_from_mesh = stage.from_mesh(item.world_from_mesh, mesh.origin);
-        drawables.push_back({.mesh = &mesh, .item = &item, .stage_from_mesh = stage_from_mesh});
+        drawable.mesh = &meshes.prepared(*item.mesh, item.position);
+        drawable.stage_from_mesh = stage.from_mesh(item.world_from_mesh, drawable.mesh->origin);
+        drawables.push_back(std::move(drawable));
     }
-    if (extent.casting.empty()) extent.casting.grow(stage.center);
-    extent.shown.grow(extent.casting);
+    if (extent.shown.empty()) extent.shown.grow(stage.center);
     return drawables;
 }
 
@@ -355,7 +358,7 @@ std::vector<float> Renderer::Parts::draw_light(const std::vector<Drawable>& draw
 Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
     canvas.make_current();
     const View view = camera.at(picture.film_share);
-    Extent extent{{}, action_bounds};
+    Extent extent;
     std::vector<Drawable> drawables;
     timed("send", [&] { drawables = prepare(picture, view.eye, extent); });
     std::size_t triangles = 0;
@@ -366,10 +369,13 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
 
     const bool eye_is_outside = !extent.shown.contains(view.eye);
     for (Drawable& d : drawables) d.culls = d.mesh->closed && eye_is_outside;
-    const FrameBlock frame = frame_block(settings, stage, extent, view, ground_height, front);
-    gl.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer.id());
-    gl.BufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);
-    gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer.id());
+    FrameBlock frame = frame_block(settings, stage, extent, view, ground_height, front);
+    const auto tell_shaders = [&] {
+        gl.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer.id());
+        gl.BufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);
+        gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer.id());
+    };
+    tell_shaders();
     // From below the ground would hide everything.
     const bool ground = settings.ground && view.eye.y() > ground_height &&
                         std::none_of(picture.item.begin(), picture.item.end(),
@@ -377,8 +383,14 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
 
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);
-    timed("shadow", [&] { visibility.draw_shadow(drawables); });
     timed("depth", [&] { visibility.draw_depth(drawables, ground); });
+    timed("shadow", [&] {
+        const Mat3 from_light = world_from_key_light(settings.light, front);
+        const ShadowMaps maps = visibility.fit_shadows(drawables, frame, from_light);
+        frame.set_shadows(maps);
+        tell_shaders();
+        visibility.draw_shadows(drawables, maps, from_light);
+    });
     timed("visibility", [&] { visibility.draw_visibility(); });
     timed("surfaces", [&] {
         draw_surfaces(drawables, ground, target_of(bytes, multisampled), surface_shaders);

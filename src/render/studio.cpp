@@ -23,27 +23,6 @@ Vec3 towards(double azimuth, double elevation) { return orbit_rotation(azimuth, 
 
 glm::vec4 four(const Vec3& v, double w) { return {to_glm(v), w}; }
 
-struct ShadowBox {
-    glm::dmat4 map_from_stage;  // to 0..1
-    double side;                // of the map [stage]
-    double depth;               // of the map [stage]
-};
-
-// A square map along the light, as small as holds the box.
-ShadowBox fit_shadow(const Box& box, const Mat3& stage_from_light) {
-    Box lit;
-    for (int c = 0; c < 8; ++c) lit.grow(stage_from_light.transpose() * box.corner(c));
-    const double side = 1.06 * std::max(lit.size().x(), lit.size().y());
-    const double depth = 1.06 * lit.size().z() + 1e-3;
-    const Vec3 c = lit.center();
-    const glm::dmat4 clip = glm::ortho(c.x() - side / 2, c.x() + side / 2, c.y() - side / 2,
-                                       c.y() + side / 2, -c.z() - depth / 2, -c.z() + depth / 2);
-    // OpenGL's cube of -1 to 1 becomes 0 to 1, as textures are addressed.
-    const glm::dmat4 half =
-        glm::scale(glm::translate(glm::dmat4(1), glm::dvec3(0.5)), glm::dvec3(0.5));
-    return {half * clip * view_from_world({Vec3::Zero(), stage_from_light}), side, depth};
-}
-
 // How far before the eye the picture's lower edge meets the ground; infinite where it does not.
 double nearest_ground(const View& view, const Lens& lens, double ground) {
     double nearest = std::numeric_limits<double>::infinity();
@@ -76,6 +55,10 @@ Lamps lamps_of(const LightPlace& light, double front) {
     return {towards(front + light.azimuth, light.elevation),
             towards(turned + kFillAzimuth, kFillElevation),
             towards(turned + kRimAzimuth, kRimElevation)};
+}
+
+Mat3 world_from_key_light(const LightPlace& light, double front) {
+    return orbit_rotation(front + light.azimuth, light.elevation);
 }
 
 double front_of(const View& first) {
@@ -124,16 +107,17 @@ FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const
     frame.rim = four(lamps.rim, 0);
     const bool is_clear = settings.background == Background::transparent;
     frame.ground = glm::dvec4(ground, kGroundFade, kGroundEnd, is_clear ? 1 : 0);
-
-    Box mapped = stage.box(extent.casting);
-    const Vec3 middle = mapped.center();
-    if (settings.ground) mapped.grow({middle.x(), ground, middle.z()});
-    const ShadowBox map = fit_shadow(
-        mapped, orbit_rotation(front + settings.light.azimuth, settings.light.elevation));
-    frame.shadow_from_stage = map.map_from_stage;
-    frame.shadow = glm::dvec4(map.side / kShadowMapSide, 1.0 / kShadowMapSide,
-                              kLampSize * map.depth / map.side, 1.5 / kShadowMapSide);
     return frame;
+}
+
+void FrameBlock::set_shadows(const ShadowMaps& maps) {
+    for (std::size_t i = 0; i < maps.map.size(); ++i) {
+        const ShadowMap& map = maps.map[i];
+        shadow_from_stage[i] = map.map_from_stage;
+        shadow[i] = glm::dvec4(map.side / kShadowMapSide, map.side, map.depth, 0);
+    }
+    shadow_parts =
+        glm::dvec4(maps.nearest, maps.per_log, static_cast<double>(maps.map.size()), kLampSize);
 }
 
 }  // namespace swage
