@@ -36,6 +36,8 @@ double monotone_cubic(const std::vector<double>& x, const std::vector<double>& y
            (3 * t2 - 2 * t3) * y[k + 1] + (t3 - t2) * width * slope_at(x, y, k + 1, goes_on);
 }
 
+constexpr double kMostNearer = 2;  // than zoom says, at most: of the near side of what is framed
+
 Box sensible(Box box) {
     if (box.empty()) box = {Vec3::Constant(-0.5), Vec3::Constant(0.5)};
     const double least = std::max(1e-9, 1e-6 * box.size().maxCoeff());
@@ -199,7 +201,16 @@ View CameraPath::orbit(const std::vector<double>& value) const {
     const Framing framing = frame_points(outline_, bounds_.center(), rotation, lens_);
     const Vec3 aim = {value[3], value[4], value[5]};
     const Vec3 middle = framing.target + value[6] * (aim - framing.target);
-    const double distance = distance_ / std::exp(value[2]);
+    const double zoom = std::exp(value[2]);
+    double distance = distance_ / zoom;
+    // Zoom is about the middle: where the bodies' way reaches far towards the eye, that would bring
+    // the eye within it, or so near that one face fills the picture. A target is the user's own.
+    double front = 0;
+    for (const Vec3& point : outline_) {
+        front = std::max(front, rotation.col(2).dot(point - framing.target));
+    }
+    const double least = front + (distance_ - front) / (kMostNearer * zoom);
+    distance += (1 - value[6]) * std::max(least - distance, 0.0);
     // What is named is looked at straight.
     const double lift = (1 - value[6]) * lens_.free_below * lens_.tangent_y * distance;
     return {middle + distance * rotation.col(2) - lift * rotation.col(1), rotation};

@@ -84,6 +84,35 @@ TEST_CASE("zoom 2 stands twice as near", "[camera]") {
     CHECK(-one.in_view(box.center()).z() == Approx(-2 * two.in_view(box.center()).z()));
 }
 
+TEST_CASE("zoom brings the eye neither into what it frames nor up against it", "[camera]") {
+    for (const Box& box : kBoxes) {
+        for (const double azimuth : {0.0, 0.5 * kPi, 0.8}) {
+            for (const double elevation : {0.0, 0.35, 0.5 * kPi}) {
+                RenderSettings settings;
+                const auto gap = [&](double zoom) {  // from the near side to the eye
+                    settings.camera = {{0, azimuth, elevation, zoom, {}, {}}};
+                    const View view = CameraPath(settings, box).at(0);
+                    double least = 1e9;
+                    for (const Vec3& corner : corners_of(box)) {
+                        least = std::min(least, -view.in_view(corner).z());
+                    }
+                    return least;
+                };
+                const double framed = gap(1);
+                double before = framed;
+                for (const double zoom : {1.3, 2.0, 4.0, 30.0}) {
+                    INFO(box.size().transpose()
+                         << " from " << azimuth << ", " << elevation << ", zoom " << zoom);
+                    const double here = gap(zoom);
+                    CHECK(here > 0.49 * framed / zoom);
+                    CHECK(here < before);
+                    before = here;
+                }
+            }
+        }
+    }
+}
+
 TEST_CASE("azimuth turns from +z toward +x and elevation raises the eye", "[camera]") {
     CHECK((orbit_rotation(0, 0).col(2) - Vec3(0, 0, 1)).norm() < 1e-12);
     CHECK((orbit_rotation(kPi / 2, 0).col(2) - Vec3(1, 0, 0)).norm() < 1e-12);
@@ -194,8 +223,11 @@ TEST_CASE("a target without an eye is looked at from where azimuth, elevation an
     framing.camera[0].target.reset();
     const View framed = CameraPath(framing, kBoxes[0]).at(0.5);
     CHECK((view.world_from_view - framed.world_from_view).norm() < 1e-12);
-    CHECK(-seen.z() == Approx(-framed.in_view(kBoxes[0].center()).z()));
+    framing.camera[0].zoom = 1;
+    const View whole = CameraPath(framing, kBoxes[0]).at(0.5);
+    CHECK(-4 * seen.z() == Approx(-whole.in_view(kBoxes[0].center()).z()));
     // A flight from the whole action to the target arrives at it.
+    framing.camera[0].zoom = 4;
     settings.camera.insert(settings.camera.begin(), framing.camera[0]);
     settings.camera[1].at = 1;
     const CameraPath flight(settings, kBoxes[0]);
