@@ -21,8 +21,10 @@ uniform vec4 material_finish;  // roughness, metallic, whether the mesh's colour
                                // light that goes through: it bends twice as in a ball and meets
                                // the room, for what else is drawn is not seen through
 uniform vec4 endless;          // middle and radius of what fades out; a radius of 0: does not
+uniform vec4 evened;           // share of the light that is the same everywhere
 layout(location = 0) out vec4 pixel_color;
 
+const float EVEN = 0.9;    // what a white matt surface returns of that: nearly its own colour
 const float INDEX = 1.45;  // of refraction, between ice and glass
 
 vec3 environment_share(vec3 f0, float roughness, float nv) {
@@ -49,7 +51,8 @@ void main() {
     vec3 matt = base * (1.0 - metallic) * (1.0 - clear);
     float nl = max(dot(n, key.xyz), 0.0);
 
-    vec3 light = matt * (KEY * nl * seen.y + ambient(n) * seen.x);
+    vec3 light = matt * mix(KEY * nl * seen.y + ambient(n) * seen.x,
+                            vec3(EVEN * (0.5 + 0.5 * seen.x)), evened.x);
     vec3 ray = reflect(-v, n), wall = on_wall(position, ray);
     // Where a pixel holds much of a bend, its mirror image is as blurred as that: no sparks.
     vec3 bend_x = dFdx(n), bend_y = dFdy(n);

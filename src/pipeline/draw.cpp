@@ -53,8 +53,8 @@ class FrameSource {
             }
             if (look_) look_->dress(stored.body[b], body.skin);
             body.position = std::move(stored.body[b].position);
-            picture.item.push_back(
-                {&body.skin, &body.position, drawn_from_world_, std::nullopt, false});
+            picture.item.push_back({&body.skin, &body.position, drawn_from_world_, std::nullopt,
+                                    false, look_ != nullptr});
         }
         for (std::size_t b = 0; b < machine_.size(); ++b) {
             const std::optional<SurfaceMaterial> look = look_of(machine_[b], settings_);

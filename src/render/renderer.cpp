@@ -25,6 +25,9 @@ constexpr int kSamples = 4;
 constexpr std::size_t kMostMultisampledTriangles = 60'000;
 constexpr long kMostMultisampledPixels = 4096l * 4096l;
 
+// Of the light on what tells numbers by its colours, the share that is the same everywhere.
+constexpr float kEvened = 0.65f;
+
 constexpr double kShadowReach = 4;  // [stage] about the action, in which shadows fall on it
 
 Box world_box(const DrawItem& item) {
@@ -202,6 +205,8 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
             shader.set4("material_color", glm::value_ptr(color));
             shader.set4("material_finish", glm::value_ptr(finish));
             shader.set4("endless", glm::value_ptr(endless));
+            const float evened[4] = {d.item->tells_numbers ? kEvened : 0, 0, 0, 0};
+            shader.set4("evened", evened);
             if (texture != 0) set_unit(gl, 1, texture);
             d.mesh->draw(gl, range);
         }

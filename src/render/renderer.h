@@ -23,6 +23,8 @@ struct DrawItem {
     std::optional<SurfaceMaterial> material_override;  // for the whole item
     // Stands for the ground: fades out into the backdrop away from the action, casts no shadow.
     bool endless = false;
+    // Its colours tell numbers: light changes them little, so that they are the scale's.
+    bool tells_numbers = false;
 };
 
 struct Picture {

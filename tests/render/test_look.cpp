@@ -203,3 +203,29 @@ TEST_CASE("a plate that mirrors what lies right opposite a lamp shows no spark",
         CHECK(most < 8);
     }
 }
+
+TEST_CASE("colours that tell numbers are the scale's in light and in shade", "[renderer]") {
+    if (!can_draw()) return;
+    const TriMesh ball = surface_of(SphereShape{0.4});
+    const Vec3 color(0.1, 0.35, 0.4);
+    const auto darkest_share = [&](bool tells_numbers) {
+        DrawItem item{&ball, nullptr, {Quat::Identity(), {0, 0.5, 0}}, colored(color)};
+        item.material_override->roughness = 0.85;
+        item.tells_numbers = tells_numbers;
+        const Image image = drawn(small_picture(), {item});
+        double least = 255, most = 0;
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                const std::uint8_t* p = image.pixel(x, y);
+                if (p[2] < p[0] + 20) continue;
+                least = std::min(least, brightness(image, x, y));
+                most = std::max(most, brightness(image, x, y));
+            }
+        }
+        return least / most;
+    };
+    const double as_it_looks = darkest_share(false), as_a_scale = darkest_share(true);
+    INFO("the darkest has " << as_it_looks << " and " << as_a_scale << " of the brightest");
+    CHECK(as_it_looks < 0.5);
+    CHECK(as_a_scale > 0.55);
+}
