@@ -109,9 +109,9 @@ void ContactWay::leave_out_let_be() {
 
 void ContactWay::restore(const State& state) {
     list_ = state.contacts;
-    leave_out_let_be();
     gone_ = state.gone;
     own_gone_ = state.own_gone;
+    leave_out_let_be();
     has_changed_ = state.has_changed;
     begins_ = state.begins;
     is_found_ = false;

@@ -164,10 +164,11 @@ StaticMove QuasistaticSolver::begin_move(const Drive& from, const Drive& to, int
     return move;
 }
 
-void QuasistaticSolver::put_back(const StaticMove& move) {
+// Returns what the work-piece no longer holds there [J].
+double QuasistaticSolver::put_back(const StaticMove& move) {
     matter_.particle_position = move.start;
-    forces_.self.take_back();
     foresight_.forget();
+    return forces_.self.take_back();
 }
 
 // Takes the try back. Whether another may come to more, for something that would not come to rest
@@ -186,7 +187,7 @@ bool QuasistaticSolver::take_back(Relaxation& tried, const StaticMove& move, Mov
     const bool eased =
         given_up && !tried.falls && !tried.converged && forces_.measure.ease(measure, kEased);
     if (eased) outcome.left_over = settings_.tolerance * measure;
-    put_back(move);
+    outcome.body[0].set_free += put_back(move);
     const bool may_hang = !tried.converged && !tried.falls && (given_up || move.depth > 0);
     const int afloat = tried.falls ? forces_.free.let_fall(forces_.pushes) : 0,
               hanging = may_hang ? forces_.let_hang(move.to) : 0;

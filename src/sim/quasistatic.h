@@ -51,7 +51,7 @@ class QuasistaticSolver {
                    Unsolved unsolved = Unsolved::stop);
     StaticMove begin_move(const Drive& from, const Drive& to, int depth,
                           const BodyOutcome& outcome);
-    void put_back(const StaticMove& move);
+    double put_back(const StaticMove& move);
     bool take_back(Relaxation& tried, const StaticMove& move, MoveOutcome& outcome);
     double share_to_yield(const StaticMove& move);
     void keep(const StaticMove& move, bool buckled, MoveOutcome& outcome);

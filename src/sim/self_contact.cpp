@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/self_contact.h"
 
+#include <utility>
+
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -18,11 +20,20 @@ SelfContact::SelfContact(Aggregate& matter, const SimSettings& settings) {
 }
 
 void SelfContact::begin_move() {
-    if (contact_ != nullptr) start_ = contact_->save();
+    if (contact_ == nullptr) return;
+    start_ = contact_->save();
+    start_sums_ = sums_;
+    lets_be_ = false;
 }
 
-void SelfContact::take_back() {
-    if (contact_ != nullptr) contact_->restore(*start_);
+double SelfContact::take_back() {
+    if (contact_ == nullptr) return 0;
+    contact_->restore(*start_);
+    sums_ = start_sums_;
+    if (!std::exchange(lets_be_, false)) return 0;
+    find();
+    contact_->meet_anew();
+    return start_sums_.stored - sums_.stored;
 }
 
 // Forces were last found anywhere: a try of another way, a step back.
@@ -78,7 +89,10 @@ std::vector<PressedPlaces> SelfContact::pressed() const {
 }
 
 int SelfContact::let_be(double deeper) {
-    return contact_ != nullptr ? contact_->let_be(deeper) : 0;
+    if (contact_ == nullptr) return 0;
+    const int count = contact_->let_be(deeper);
+    lets_be_ = lets_be_ || count > 0;
+    return count;
 }
 
 }  // namespace swage

@@ -15,9 +15,10 @@ class SelfContact {
     // Does nothing unless settings.self_contact. The matter must outlive it.
     SelfContact(Aggregate& matter, const SimSettings& settings);
 
-    // An attempt at an equilibrium begins; take_back(): it has come to nothing.
+    // An attempt at an equilibrium begins; take_back(): it has come to nothing, and the matter
+    // stands where it began. Returns what points held there that are let be since [J].
     void begin_move();
-    void take_back();
+    double take_back();
     // It is kept, at the present positions: remembers where points stick; returns what friction
     // took [J].
     double commit();
@@ -59,7 +60,8 @@ class SelfContact {
     std::unique_ptr<BodyContact> contact_;  // null: off
     Vec3Array unused_;                      // forces
     std::shared_ptr<const BodyContact::State> start_;
-    ContactSums sums_{};
+    ContactSums sums_{}, start_sums_{};
+    bool lets_be_ = false;  // more than when the attempt began
     std::size_t weighed_ = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "sim/advance.h"
+#include "sim/given_up.h"
 #include "sim/own_overlap.h"
 #include "sim/self_contact.h"
 #include "tests/catch.h"
@@ -279,6 +280,69 @@ TEST_CASE("points that are let be meet their body no more, whatever is taken bac
     shut(0.05 + 0.5 * kSpacing);
     REQUIRE(self.presses());
     CHECK(self.sums().penetration > 0.8 * deepest);
+}
+
+TEST_CASE(
+    "a try that is taken back leaves contact as it was, but for what points held that are let be") {
+    for (const bool lets_be : {true, false}) {
+        Aggregate bar = make_block(5, 8, 5, 0.1, soft());
+        sever_plane(bar, Vec3(0, 0.05, 0), Vec3::UnitY());
+        SelfContact self(bar, settings_of(true));
+        const auto press = [&](double by) {  // most at one side
+            for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+                const Vec3 x = bar.particle_reference.at(p);
+                const double down = x.y() > 0.05 ? by * (x.x() + 0.35) : 0;
+                bar.particle_position.set(p, x - Vec3(0, down, 0));
+            }
+        };
+        press(0.05);
+        REQUIRE(self.presses());
+        self.commit();
+        const double held = self.sums().stored;
+        self.begin_move();
+        press(0.1);
+        REQUIRE(self.presses());
+        REQUIRE(self.sums().stored > 3 * held);
+        if (lets_be) REQUIRE(self.let_be(0.6 * self.sums().penetration) > 0);
+        press(0.05);
+        const double gone = self.take_back();
+        // All the same where nothing is found anew before it is asked.
+        CHECK(self.sums().stored == Approx(held - gone).epsilon(1e-12));
+        CHECK((gone > 0.3 * held) == lets_be);
+        CHECK(gone < 0.95 * held);
+        REQUIRE(self.presses());
+        CHECK(self.sums().stored == Approx(held - gone).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("what points held that are let be is booked, and no error") {
+    Aggregate bar = make_block(5, 8, 5, 0.1, soft());
+    sever_plane(bar, Vec3(0, 0.05, 0), Vec3::UnitY());
+    SimSettings settings = settings_of(true);
+    settings.contact_stiffness = 0.5;
+    settings.iteration_limit = 100;
+    settings.halving_limit = 0;
+    const Press press{0.8};
+    const Apparatus apparatus = press.apparatus();
+    Simulation simulation(bar, apparatus, settings);
+    FrameReport held;
+    for (int f = 0; f < 5; ++f) {
+        held =
+            simulation.advance(press.drive_at(f, 0.03 * f), press.drive_at(f + 1, 0.03 * (f + 1)));
+    }
+    REQUIRE(held.contact > 100);
+    REQUIRE(std::abs(held.remainder) < 3e-3 * held.work);
+    // So far at once that it comes to rest nowhere, and stays.
+    FrameReport after;
+    try {
+        after = simulation.advance(press.drive_at(5, 0.15), press.drive_at(6, 0.4));
+    } catch (const GivenUp& given_up) {
+        after = given_up.report();
+    }
+    REQUIRE(after.elastic == held.elastic);
+    CHECK(after.contact < 0.7 * held.contact);
+    CHECK(after.set_free == Approx(held.contact - after.contact).epsilon(1e-6));
+    CHECK(after.remainder == Approx(held.remainder).epsilon(1e-3));
 }
 
 TEST_CASE("what presses in a fold goes on without a jump as its sides slide along each other") {
