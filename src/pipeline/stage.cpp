@@ -66,6 +66,8 @@ class StageRun {
           overlaps_before_(overlaps_of(bodies, stage.sim)),
           machine_(stage_machine(stage, bodies.front().matter, materials_beside(named(bodies)),
                                  box_of(bodies.front().position))),
+          told_deep_(moves_as_molded() ? start_deep(machine_, named(bodies), overlaps_before_)
+                                       : std::vector<char>(bodies.size(), 0)),
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
           way_(stage, machine_, bodies.front().matter),
           limits_(stage, machine_),
@@ -117,10 +119,12 @@ class StageRun {
         for (const std::string& note : machine_.notes) tell(note);
     }
 
+    bool moves_as_molded() const {
+        return in_motion(stage_.sim.solver) && &stage_ == &context_.scene.stage.front();
+    }
+
     void warn_of_start() {
-        const bool to_move_as_molded =
-            in_motion(stage_.sim.solver) && &stage_ == &context_.scene.stage.front();
-        std::vector<std::string> told = tool_overlaps(machine_, named(bodies_), to_move_as_molded);
+        std::vector<std::string> told = tool_overlaps(machine_, named(bodies_), moves_as_molded());
         const std::string note = stiffness_note(stage_, named(bodies_));
         if (!note.empty()) told.push_back(note);
         for (std::string& one : boundary_notes(bodies_)) told.push_back(std::move(one));
@@ -391,6 +395,7 @@ class StageRun {
                            .connections_before = connections_before_,
                            .volumes_before = volumes_before_,
                            .overlaps_before = overlaps_before_,
+                           .told_deep = told_deep_,
                            .probes = probes()};
         const StageEnded ended = outcome_.interrupted ? StageEnded::interrupted
                                  : outcome_.stopped   ? StageEnded::stopped
@@ -425,6 +430,7 @@ class StageRun {
     const std::vector<BodyVolume> volumes_before_;
     const std::vector<double> overlaps_before_;
     Machine machine_;  // it may come to stop
+    const std::vector<char> told_deep_;
     const int pieces_before_;
     StageWay way_;
     LimitWatch limits_;

@@ -58,6 +58,7 @@ struct StageEnd {
     std::size_t connections_before;
     const std::vector<BodyVolume>& volumes_before;
     const std::vector<double>& overlaps_before;  // of each body with others (overlaps_of())
+    const std::vector<char>& told_deep;          // of each: as it began (start_deep())
     std::vector<ProbePlace> probes;
 };
 

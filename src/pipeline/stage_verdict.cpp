@@ -43,12 +43,14 @@ std::string how_deep(const Books& last, const StageEnd& end, const std::string& 
 // What contacts and grips hold as a stage in motion begins is let go of at once, and no mistake
 // where it lifts a body by less than a cell, moves it by less in all of the stage, or a second, or
 // is little beside how it flies. A body that is pressed by right is strained, and holds more
-// itself. Of several, the one that is thrown fastest. Empty: none is.
+// itself. Of several, the one that is thrown fastest, beside those that have been told to lie deep
+// in something. Empty: none is.
 std::string pressed_at_start(const StageEnd& end) {
     if (!in_motion(end.stage.sim.solver)) return {};
     std::size_t worst = 0, count = 0;
     double fastest = 0, thrown_by = 0;
     for (std::size_t b = 0; b < end.last.body.size(); ++b) {
+        if (end.told_deep[b]) continue;
         const Aggregate& matter = end.bodies[b].matter;
         const double energy = end.last.body[b].contact_at_start, mass = matter.mass();
         const double a = matter.lattice.spacing, slowly = a / std::max(1.0, end.stage.duration);

@@ -91,6 +91,15 @@ Standing standing_at(const BoxShape& plate, const Pose& plate_from_world, const 
     return standing;
 }
 
+Standing standing_at(const Tool& tool, const Pose& world_from_tool, const Vec3& work_piece,
+                     const Vec3& middle, const std::vector<Vec3>& points) {
+    const auto* plate = std::get_if<BoxShape>(&tool.shape);
+    if (tool.finish == Finish::endless && plate != nullptr) {
+        return standing_at(*plate, world_from_tool.inverse(), work_piece, middle, points);
+    }
+    return {{}, -nearest_distance(tool.shape, world_from_tool, points)};
+}
+
 // A body that nothing has deformed yet, and what is found of it where another comes near.
 class Starting {
   public:
@@ -241,15 +250,8 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
         const std::vector<Vec3> points = touching_points(*bodies[b].matter);
         const Vec3 middle = box_of(points).center();
         for (std::size_t n = 0; n < world_from_tool.size(); ++n) {
-            const Tool& tool = machine.apparatus.tool[n];
-            const auto* plate = std::get_if<BoxShape>(&tool.shape);
-            Standing standing;
-            if (tool.finish == Finish::endless && plate != nullptr) {
-                standing =
-                    standing_at(*plate, world_from_tool[n].inverse(), work_piece, middle, points);
-            } else {
-                standing.deep = -nearest_distance(tool.shape, world_from_tool[n], points);
-            }
+            const Standing standing = standing_at(machine.apparatus.tool[n], world_from_tool[n],
+                                                  work_piece, middle, points);
             if (!standing.astray.empty() && b > 0) {
                 astray[{n, standing.astray}].add(bodies[b].name, 0, 0);
             } else if (standing.deep > least) {
@@ -279,6 +281,25 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
                                                         : "move them with `at`, or move the tool"));
     }
     return told;
+}
+
+std::vector<char> start_deep(const Machine& machine, const std::vector<NamedMatter>& bodies,
+                             const std::vector<double>& overlaps) {
+    const std::vector<Pose> world_from_tool = drive_at(machine, 0, 1).world_from_tool;
+    const Vec3 work_piece = machine.frame.world_from_work.translation;
+    std::vector<char> deep(bodies.size(), 0);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const std::vector<Vec3> points = touching_points(*bodies[b].matter);
+        const Vec3 middle = box_of(points).center();
+        double deepest = overlaps[b];
+        for (std::size_t n = 0; n < world_from_tool.size(); ++n) {
+            deepest = std::max(deepest, standing_at(machine.apparatus.tool[n], world_from_tool[n],
+                                                    work_piece, middle, points)
+                                            .deep);
+        }
+        deep[b] = deepest > kTouches * bodies[b].matter->lattice.spacing;
+    }
+    return deep;
 }
 
 }  // namespace swage

@@ -23,4 +23,9 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
                                        const std::vector<NamedMatter>& bodies,
                                        bool to_move_as_molded = false);
 
+// Of bodies as they were molded, and to move: which of them these sentences tell of as deep, given
+// how deep contact finds each in others [m].
+std::vector<char> start_deep(const Machine& machine, const std::vector<NamedMatter>& bodies,
+                             const std::vector<double>& overlaps);
+
 }  // namespace swage

@@ -30,7 +30,8 @@ struct CutBar {
         bodies[0].matter = test::make_block(16, 4, 4, 0.0125, reading.scene->work_piece().material);
     }
 
-    int severed = 1;     // in the stage
+    int severed = 1;  // in the stage
+    bool is_told_deep = false;
     double snapped = 0;  // in one frame [J]
 
     double modulus() const { return bodies[0].matter.material.young_modulus; }
@@ -57,6 +58,7 @@ struct CutBar {
         first.body.resize(last.body.size());
         if (volumes_before.empty()) volumes_before = body_volumes(bodies);
         happens();
+        const std::vector<char> told_deep(bodies.size(), is_told_deep);
         const StageEnd end{.stage = stage,
                            .machine = machine,
                            .bodies = bodies,
@@ -69,6 +71,7 @@ struct CutBar {
                            .connections_before = 0,
                            .volumes_before = volumes_before,
                            .overlaps_before = {},
+                           .told_deep = told_deep,
                            .probes = {}};
         std::string text;
         for (const std::string& line : judge_stage(end, 1, StageEnded::wholly).warning) {
@@ -190,6 +193,8 @@ TEST_CASE("what is thrown off as a stage begins is told from what, with what can
     CHECK(says(told(5, 9), "bar starts pressed into itself, or its pieces into each other"));
     CHECK(says(told(5, 9), "without self_contact = true"));
     for (const double among : {0.0, 5.0}) CHECK_FALSE(says(told(among, 9), "with `at`"));
+    bar.is_told_deep = true;
+    CHECK_FALSE(says(told(0, 1), "starts pressed"));
 }
 
 TEST_CASE("a skin that swells though its matter flows is told of") {
