@@ -157,7 +157,8 @@ Relaxation EquilibriumSearch::solve_smooth(StaticForces& forces, const StaticMov
     const bool converged = found.converged && forces.mirrored == 0;
     newton_pause_ = converged ? 0 : std::clamp(2 * newton_pause_, 1, kLongestPause);
     newton_rests_ = newton_pause_;
-    return {converged, found.steps, found.residual};
+    const bool over = converged && newton_->has_gone_over(forces.matter, move.start);
+    return {converged, found.steps, found.residual, false, over};
 }
 
 // The drag is let go until what it holds back is no more than the residual may be, from where that
@@ -189,7 +190,7 @@ Relaxation EquilibriumSearch::relax(StaticForces& forces, const StaticMove& move
             round = settle(forces, *coarse_, move, accuracy, iteration_limit_);
         }
         result = {round.converged, result.iterations + round.iterations, round.residual,
-                  round.falls};
+                  round.falls, result.buckled || round.buckled};
         if (!round.converged) return result;
         const double dragged = forces.hold * chunked_sum(x.size(), [&](std::size_t p) {
                                    return forces.drag[p] * (x.at(p) - forces.held.at(p)).norm();
@@ -215,15 +216,15 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         accuracy = wanted;
         const Relaxation next = relax(forces, move, accuracy);
         result = {next.converged, result.iterations + next.iterations, next.residual, next.falls,
-                  result.buckled};
+                  result.buckled || next.buckled};
     };
     const auto leave_less = [&] {
-        const double enough = result.residual;
+        const Relaxation rest = result;
         const Vec3Array there = x;
         again(0.1 * accuracy);
         if (result.converged) return true;
         x = there;
-        result = {true, result.iterations, enough, false, result.buckled};
+        result = {true, result.iterations, rest.residual, false, rest.buckled};
         return false;
     };
     // What was cut, or lost its grips, has no push to measure by, and a tangent only where Newton's
@@ -265,6 +266,7 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         }
         result.buckled = true;
     }
+    has_buckled_ = has_buckled_ || (result.converged && result.buckled);
     return result;
 }
 

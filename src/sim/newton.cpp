@@ -22,6 +22,9 @@ constexpr struct {
 // Of the matter's own stiffness: less than the one below zero is no instability, more than the
 // other is a turn of the whole, which strains nothing.
 constexpr double kFalls = 0.01, kTurns = 50;
+constexpr bool leaves_rest(double left) { return left < -kFalls && left > -kTurns; }
+constexpr double kNearRest = 1;     // times what it is pushed with, left over
+constexpr double kMostly = 0.5;     // of how far it has gone
 constexpr double kDownhill = 2;     // spacings, where the curvature is negative
 constexpr double kFarthest = 0.1;   // of the body, for what leaves an equilibrium
 constexpr double kProbe = 0.05;     // spacings, to find how that bends
@@ -108,6 +111,7 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
         if (!(curvature > 0)) {
             if (!std::isfinite(curvature)) return false;
             falls_ = true;
+            give_way(matter, problem, curvature);
             combine(1, kDownhill * matter.lattice.spacing / longest_of(search_), search_,
                     direction_);
             return true;
@@ -127,6 +131,29 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
     }
     prepared_.is_stale = true;
     return true;
+}
+
+// The present search direction has this curvature. NOTE: far from rest, where a step has stretched
+// what is slender, that says nothing: a blade under too little to tip over gave way there, and came
+// back upright.
+void Newton::give_way(const Aggregate& matter, const NewtonProblem& problem, double curvature) {
+    if (gave_way_.size() > 0 || !(problem.residual(force_) <= kNearRest)) return;
+    product(matter, problem, {Flow::trial, 0.0}, search_, image_);
+    const double own = dot(search_, image_);
+    if (own > 0 && leaves_rest(curvature / own)) gave_way_ = search_;
+}
+
+bool Newton::has_gone_over(const Aggregate& matter, const Vec3Array& start) const {
+    if (gave_way_.size() == 0) return false;
+    const std::vector<double>& mass = matter.particle_mass;
+    const auto along = [&](const auto& gone) {
+        return chunked_sum(mass.size(),
+                           [&](std::size_t p) { return mass[p] * gave_way_.at(p).dot(gone(p)); });
+    };
+    const Vec3Array& x = matter.particle_position;
+    const double gone = along([&](std::size_t p) -> Vec3 { return x.at(p) - start.at(p); }) /
+                        along([&](std::size_t p) -> Vec3 { return gave_way_.at(p); });
+    return std::abs(gone) * longest_of(gave_way_) > kMostly * farthest_move(x, start);
 }
 
 Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {
@@ -229,7 +256,7 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     const double left = softest_.follow(
         matter.particle_mass, problem.diagonal, free_motions(matter, problem.held), times(1),
         times(0), [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
-    return left < -kFalls && left > -kTurns;
+    return leaves_rest(left);
 }
 
 // NOTE: along one motion, for what tools carry along as they go says nothing of how far a neck or a
@@ -266,6 +293,7 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
     const bool turns = problem.held.empty() && !problem.held_now;
     tangent_.moved();
     falls_ = false;
+    gave_way_ = {};
     const auto most = [&] { return falls_ || problem.gives_way ? kMostFalling : kMostSteps; };
     for (result.steps = 0; result.steps < most(); ++result.steps) {
         result.residual = problem.residual(force_);

@@ -45,6 +45,9 @@ class Newton {
     // motion.
     bool buckles(const Aggregate& matter, const NewtonProblem& problem);
     const Vec3Array& softest_motion() const { return softest_.motion(); }
+    // Whether in the last solution it gave way so, near rest, and has gone from `start` most of all
+    // by the motion that it gave way to.
+    bool has_gone_over(const Aggregate& matter, const Vec3Array& start) const;
 
     // How far the body has gone from `start` by its slowest motion, that of least stiffness for its
     // mass, and how far these forces, left over, would still take it.
@@ -62,6 +65,7 @@ class Newton {
   private:
     bool prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact);
     bool find_direction(const Aggregate& matter, const NewtonProblem& problem, double accuracy);
+    void give_way(const Aggregate& matter, const NewtonProblem& problem, double curvature);
     // `turns`: nothing holds the body, it may turn as a whole.
     double line_search(Aggregate& matter, const NewtonProblem& problem, bool turns);
     bool find_bend(Aggregate& matter, const NewtonProblem& problem);
@@ -99,6 +103,7 @@ class Newton {
     Multigrid multigrid_;
     double extent_;       // [m]
     bool falls_ = false;  // some direction has had negative curvature
+    Vec3Array gave_way_;  // that motion, the first in a solution; empty: to none
     Prepared prepared_;
     SoftMode softest_, slowest_;
     Vec3Array force_, direction_, residual_, search_, image_, better_, from_, bent_;
