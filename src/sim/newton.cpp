@@ -29,6 +29,39 @@ constexpr double kDownhill = 2;     // spacings, where the curvature is negative
 constexpr double kFarthest = 0.1;   // of the body, for what leaves an equilibrium
 constexpr double kProbe = 0.05;     // spacings, to find how that bends
 constexpr double kOvershoot = 0.5;  // of the work along a step that may be left, either way
+constexpr double kTurned = 0.1;     // that cells turn or strain in a step that is not cut [rad]
+constexpr int kPatience = 3;        // such steps that may not have come low enough yet
+constexpr double kLower = 0.2;      // of what the first one promises, to be low enough
+
+// What any cell turns or strains by along this way, at most.
+double most_turned(const Lattice& lattice, const Vec3Array& way) {
+    double most = 0;
+    for (const CellRun& run : lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            Vec3 of[8];
+            for (int c = 0; c < 8; ++c) of[c] = way.at(run.corner(n, c));
+            for (int c = 0; c < 8; ++c) {
+                for (int d = 0; d < 3; ++d) {
+                    if (!(c >> d & 1)) most = std::max(most, (of[c | 1 << d] - of[c]).norm());
+                }
+            }
+        }
+    }
+    return most / lattice.spacing;
+}
+
+// Where the work along a straight way is zero, between these shares of it: what it loses goes as
+// the tangent says, by which it would be zero at 1, and with the cube, by which a way stretches
+// what turns.
+double zero_of_work(double start, double share, double work, double low, double high) {
+    const double cube = (start * (1 - share) - work) / (share * share * share);
+    const double least = low + 0.1 * (high - low), most = high - 0.1 * (high - low);
+    for (int n = 0; n < 20; ++n) {
+        const double s = 0.5 * (low + high);
+        (start * (1 - s) > cube * s * s * s ? low : high) = s;
+    }
+    return std::clamp(low, least, most);
+}
 
 }  // namespace
 
@@ -187,7 +220,9 @@ Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {
 // the direction gone, 0 when nowhere is better. Where the body leaves an equilibrium that does not
 // hold, forces on the way say nothing of how far it will go: there it goes all the way, bent as the
 // matter would go by itself, for straight ways stretch what is slender. What has been stretched so,
-// in a body that has buckled, comes back first.
+// in a body that has buckled, comes back first; and of what it goes there little may be left.
+// NOTE: a way that was too long ended at a tenth of it, which may be nine tenths too short. For all
+// bodies alike, those that flow gave up more often.
 double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool turns) {
     from_ = matter.particle_position;
     const double start = dot(force_, direction_);
@@ -196,7 +231,7 @@ double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool
     const bool bends = falls_ && !turns && !stretched && find_bend(matter, problem);
     const Way way = way_of(matter, turns);
     Vec3Array& x = matter.particle_position;
-    double share = 1;
+    double share = 1, low = 0, high = 0;  // high: the least that was too far; 0: none
     if (bends) share = std::min(1.0, kFarthest * extent_ / longest_of(direction_));
     for (int n = 0; n < kMostTries; ++n) {
         const Mat3 turned = turn_by(share * way.turn).toRotationMatrix();
@@ -211,11 +246,58 @@ double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool
         });
         problem.forces(force_);
         const double work = dot(force_, direction_);
-        if (std::isfinite(work) && (bends || work >= -kOvershoot * start)) return share;
-        const double zero = std::isfinite(work) ? start / (start - work) : 0;
-        share *= std::clamp(zero, 0.1, 0.7);
+        const bool is_short = high > 0 && problem.gives_way && work > kOvershoot * start;
+        if (std::isfinite(work) && (bends || work >= -kOvershoot * start)) {
+            if (!is_short || n + 1 == kMostTries) return share;
+            low = share;
+        } else {
+            high = share;
+        }
+        if (!std::isfinite(work)) {
+            share = low + 0.1 * (high - low);
+        } else if (problem.gives_way) {
+            share = zero_of_work(start, share, work, low, high);
+        } else {
+            share *= std::clamp(start / (start - work), 0.1, 0.7);
+        }
     }
     return 0;
+}
+
+// The way of a body that has buckled down a curved valley. Straight steps along it stretch what
+// turns, and the next takes that back: cut by their work, next to nothing is left of them. So they
+// are gone, and where several come to no lower energy the first of them is cut after all: the
+// watchdog technique (Chamberlain, Powell, Lemarechal, Pedersen, Math. Prog. Study 16, 1982).
+struct Newton::Descent {
+    Vec3Array lowest{}, force{}, direction{};  // positions, and there
+    double promised = 0;                       // that energy falls by [J]
+    double rise = 0;                           // of energy since [J]
+    int steps = 0;                             // since
+};
+
+// NOTE: cells that turn by 0.3 in a step threw broad bodies on slender legs into other valleys.
+double Newton::go_down(Aggregate& matter, const NewtonProblem& problem, Descent& descent) {
+    Vec3Array& x = matter.particle_position;
+    const double share = std::min(1.0, kTurned / most_turned(matter.lattice, direction_));
+    double work = dot(force_, direction_);
+    if (descent.steps == 0) descent = {x, force_, direction_, share * work};
+    // Simpson's rule: forces along a straight way go with its cube.
+    for (int half = 1; half <= 2; ++half) {
+        combine(1, 0.5 * share, direction_, x);
+        problem.forces(force_);
+        work += (half == 1 ? 4 : 1) * dot(force_, direction_);
+    }
+    descent.rise -= share * work / 6;
+    if (std::isfinite(descent.rise)) {
+        descent.steps = descent.rise < -kLower * descent.promised ? 0 : descent.steps + 1;
+        if (descent.steps <= kPatience) return share;
+    }
+    x = descent.lowest;
+    force_ = descent.force;
+    direction_ = descent.direction;
+    descent.steps = 0;
+    prepared_.is_stale = true;
+    return line_search(matter, problem, false);
 }
 
 // What forces at a small part of the way have that is of its square, and what gives way to that.
@@ -294,6 +376,9 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
     tangent_.moved();
     falls_ = false;
     gave_way_ = {};
+    // NOTE: what flows goes down no such valley; a column of steel took half as many steps again.
+    const bool slides = problem.gives_way && !turns && !matter.yields();
+    Descent descent;
     const auto most = [&] { return falls_ || problem.gives_way ? kMostFalling : kMostSteps; };
     for (result.steps = 0; result.steps < most(); ++result.steps) {
         result.residual = problem.residual(force_);
@@ -311,7 +396,8 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
             !(prepare(matter, problem, false) && find_direction(matter, problem, accuracy))) {
             break;
         }
-        const double share = line_search(matter, problem, turns);
+        const double share = slides ? go_down(matter, problem, descent)
+                                    : line_search(matter, problem, turns);
         tangent_.moved();
         if (share == 0) break;
         if (share < 1 || result.steps % kKeptSteps == kKeptSteps - 1) {

@@ -68,6 +68,8 @@ class Newton {
     void give_way(const Aggregate& matter, const NewtonProblem& problem, double curvature);
     // `turns`: nothing holds the body, it may turn as a whole.
     double line_search(Aggregate& matter, const NewtonProblem& problem, bool turns);
+    struct Descent;
+    double go_down(Aggregate& matter, const NewtonProblem& problem, Descent& descent);
     bool find_bend(Aggregate& matter, const NewtonProblem& problem);
     void product(const Aggregate& matter, const NewtonProblem& problem, CellTangent::Kind kind,
                  const Vec3Array& direction, Vec3Array& result);
