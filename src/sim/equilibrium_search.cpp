@@ -241,7 +241,7 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         if (foam_wrinkles(matter)) break;
         const NewtonProblem problem = buckling_problem(forces, move.to, accuracy);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
-        if (!newton_->buckles(matter, problem)) {
+        if (!newton_->buckles(matter, problem, forces.push_measure(move.to))) {
             if (forces.touches() || accuracy < kFinest * tolerance_) break;
             const double hold = std::exchange(forces.hold, 0);  // it holds back what is left over
             forces.find(move.to);

@@ -326,7 +326,7 @@ bool Newton::find_bend(Aggregate& matter, const NewtonProblem& problem) {
     return true;
 }
 
-bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
+bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem, double load) {
     tangent_.moved();
     if (!prepared_.is_for(problem, matter) && !prepare(matter, problem, true)) return false;
     const auto times = [&](double geometric) {
@@ -337,7 +337,8 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     const SoftMode::Map prepared = times(prepared_.kind.geometric);
     const double left = softest_.follow(
         matter.particle_mass, problem.diagonal, free_motions(matter, problem.held), times(1),
-        times(0), [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
+        times(0), [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); },
+        load);
     return leaves_rest(left);
 }
 

@@ -41,9 +41,9 @@ class Newton {
     // Moves the particles. What it leaves when it does not converge means nothing.
     Result solve(Aggregate& matter, NewtonProblem problem);
 
-    // Whether the body, at rest, would leave this equilibrium at the slightest touch; by which
-    // motion.
-    bool buckles(const Aggregate& matter, const NewtonProblem& problem);
+    // Whether the body, at rest under a load of this size, would leave this equilibrium at the
+    // slightest touch; by which motion.
+    bool buckles(const Aggregate& matter, const NewtonProblem& problem, double load);
     const Vec3Array& softest_motion() const { return softest_.motion(); }
     // Whether in the last solution it gave way so, near rest, and has gone from `start` most of all
     // by the motion that it gave way to.

@@ -21,6 +21,7 @@ constexpr int kMostRounds = 12;
 // already.
 constexpr double kFollowed = 0.02, kFound = 1e-3;
 constexpr int kOftenAtFirst = 16;
+constexpr double kMore = 1.2;  // times the load
 
 // Whether the softest motion is looked for anew: often while there are few increments yet.
 bool looks_anew(int look) {
@@ -36,7 +37,7 @@ struct Followed {
 
 double SoftMode::follow(const std::vector<double>& mass, const std::vector<double>& stiffness,
                         const std::vector<Vec3Array>& free, const Map& product,
-                        const Map& of_matter, const Map& solve) {
+                        const Map& of_matter, const Map& solve, double load) {
     const std::size_t count = mass.size();
     const auto with_mass = [&](const Vec3Array& a, const Vec3Array& b) {
         return chunked_sum(count, [&](std::size_t p) { return mass[p] * a.at(p).dot(b.at(p)); });
@@ -95,7 +96,9 @@ double SoftMode::follow(const std::vector<double>& mass, const std::vector<doubl
     const bool has_one = found_.motion.size() == count;
     found_.left = 1;
     if (has_one) descend(found_, kFollowed);
-    if (has_one && !looks_anew(looks_)) return found_.left;
+    // NOTE: one that others are no part of, by symmetry, may come late and is never come upon.
+    if (has_one && !looks_anew(looks_) && load <= kMore * load_) return found_.left;
+    load_ = load;
     // From what gives way to forces that know nothing of it, and strain all alike.
     Found other;
     Vec3Array force;

@@ -20,21 +20,22 @@ class SoftMode {
     using Map = std::function<void(const Vec3Array& from, Vec3Array& to)>;
 
     // Comes closer to that motion, of those that have nothing of what is `free`
-    // (sim/free_motions.h), and now and then looks whether it is another by now. `mass` and
-    // `stiffness` are those of each particle, the latter about; `product`: by the whole stiffness;
+    // (sim/free_motions.h), and now and then looks whether it is another by now: where `load`, of
+    // any unit, has grown by a share since, too. `mass` and `stiffness` are those of each particle,
+    // the latter about; `product`: by the whole stiffness;
     // `of_matter`: by the matter's own and what holds it, or by its mass, which makes it the
     // slowest motion and what is left its stiffness [1/s2]; `solve` is about the inverse of either.
     // Returns what is left, as a share of the matter's own, never less than there is; 1 where the
     // matter itself has none.
     double follow(const std::vector<double>& mass, const std::vector<double>& stiffness,
                   const std::vector<Vec3Array>& free, const Map& product, const Map& of_matter,
-                  const Map& solve);
+                  const Map& solve, double load = 0);
 
     const Vec3Array& motion() const { return found_.motion; }  // the matter's own of it is 1
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(found_, looks_);
+        io(found_, looks_, load_);
     }
 
   private:
@@ -50,6 +51,7 @@ class SoftMode {
 
     Found found_;
     int looks_ = 0;
+    double load_ = 0;  // at which it was looked whether it is another
 };
 
 }  // namespace swage

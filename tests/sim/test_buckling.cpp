@@ -181,6 +181,7 @@ TEST_CASE("what nothing bears on does not buckle") {
 }
 
 TEST_CASE("a leg gives way although a longer one beside it, which bears what it can, is softer") {
+    const int before = GENERATE(0, 33);  // increments in which only that one is loaded
     constexpr int kShort = 20, kLonger = 26, kBase = 2;
     const Vec3i foot(9, 1, kBase), longer_foot(1, 1, kBase), count(12, 3, kBase + kLonger);
     std::vector<Vec3i> cells;
@@ -232,10 +233,10 @@ TEST_CASE("a leg gives way although a longer one beside it, which bears what it 
     drive.load_strength = {0, 0};
     Simulation simulation(matter, apparatus, {});
     bool told = false;
-    for (int frame = 1; frame <= 4; ++frame) {
+    for (int frame = 1 - before; frame <= 4; ++frame) {
         Drive to = drive;
         to.time += 1;
-        to.load_strength = {0.3 * frame, 0.8};
+        to.load_strength = {0.3 * std::max(frame, 0), 0.8};
         told = !simulation.advance(drive, to).warning.empty();
         CHECK(told == (frame == 4));
         drive = to;
