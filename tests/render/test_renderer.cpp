@@ -169,6 +169,35 @@ TEST_CASE("a texture stands upright", "[renderer]") {
     CHECK(image.pixel(80, 80)[2] > image.pixel(80, 80)[0] + 50);
 }
 
+TEST_CASE("a texture repeats beyond 0 to 1, along both its sides", "[renderer]") {
+    if (!can_draw()) return;
+    const bool across = GENERATE(true, false);
+    Image texture{64, 64, {}};  // half red, half blue
+    for (int i = 0; i < 64 * 64; ++i) {
+        const bool red = (across ? i % 64 : i / 64) < 32;
+        for (const int c : {red ? 200 : 0, 0, red ? 0 : 200}) {
+            texture.rgb.push_back(static_cast<std::uint8_t>(c));
+        }
+    }
+    RenderSettings settings = small_picture();
+    settings.camera[0].azimuth = settings.camera[0].elevation = 0;
+    TriMesh mesh = square(1);
+    for (Vec2& uv : mesh.uv) uv *= 3;
+    SurfaceMaterial textured = colored({1, 1, 1});
+    textured.embedded_texture = std::make_shared<const std::string>(encode_png(texture));
+    const Image image = drawn(settings, {{&mesh, nullptr, {}, textured}}, -0.5,
+                              {{-0.5, -0.5, -0.1}, {0.5, 0.5, 0.1}});
+    int bands = 0, last = 0;
+    for (int n = 0; n < (across ? image.width : image.height); ++n) {
+        const std::uint8_t* p = across ? image.pixel(n, 60) : image.pixel(80, n);
+        if (std::abs(p[0] - p[2]) < 60) continue;
+        const int now = p[0] > p[2] ? 1 : -1;
+        bands += now != last;
+        last = now;
+    }
+    CHECK(bands == 6);
+}
+
 TEST_CASE("a missing texture leaves the plain colour", "[renderer]") {
     if (!can_draw()) return;
     const TriMesh mesh = square(1);
@@ -182,7 +211,7 @@ TEST_CASE("a missing texture leaves the plain colour", "[renderer]") {
     CHECK((drawn(small_picture(), {{&mesh, nullptr, {}, inside}}).rgb == b.rgb));
 }
 
-TEST_CASE("faces without texture coordinates have the plain colour", "[renderer]") {
+TEST_CASE("faces without texture coordinates at some corner have the plain colour", "[renderer]") {
     if (!can_draw()) return;
     RenderSettings settings = small_picture();
     settings.camera[0].azimuth = settings.camera[0].elevation = 0;
@@ -194,7 +223,8 @@ TEST_CASE("faces without texture coordinates have the plain colour", "[renderer]
     textured.embedded_texture = std::make_shared<const std::string>(encode_png(texture));
     mesh.material = {textured};
     const Image whole = drawn(settings, {{&mesh, nullptr, {}, std::nullopt}}, -0.5, action);
-    mesh.triangle_uv[1] = {-1, -1, -1};  // left and above the diagonal
+    // Left and above the diagonal: none, or not at every corner.
+    mesh.triangle_uv[1] = GENERATE(Corners{-1, -1, -1}, Corners{0, 2, -1});
     const Image half = drawn(settings, {{&mesh, nullptr, {}, std::nullopt}}, -0.5, action);
     const TriMesh bare = square(1);
     const Image plain =
@@ -257,6 +287,19 @@ TEST_CASE("colours of positions are shown", "[renderer]") {
     cut.takes_colors = false;
     mesh.position_color.assign(4, Eigen::Vector3f(1, 0, 0));
     CHECK(mean_difference(b, drawn(small_picture(), {{&mesh, nullptr, {}, cut}})) < 0.05);
+}
+
+TEST_CASE("other colours of the same positions are shown in the next picture", "[renderer]") {
+    if (!can_draw()) return;
+    Renderer renderer(small_picture(), kAction, 0);
+    TriMesh mesh = square(1);
+    const auto picture = [&](const Eigen::Vector3f& color) {
+        mesh.position_color.assign(4, color);
+        return renderer.draw({{{&mesh, nullptr, {}, colored({1, 1, 1})}}, 0});
+    };
+    const Image red = picture({0.8f, 0.1f, 0.1f}), green = picture({0.1f, 0.6f, 0.2f});
+    CHECK(mean_difference(red, green) > 1);
+    CHECK(mean_difference(red, picture({0.8f, 0.1f, 0.1f})) == 0);
 }
 
 TEST_CASE("given positions are drawn instead of the mesh's own, picture after picture",
