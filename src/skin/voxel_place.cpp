@@ -5,6 +5,7 @@
 #include "skin/voxel_place.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/parallel.h"
 #include "skin/carrier.h"
@@ -18,7 +19,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 1024;  // points
-constexpr int kEvenRounds = 4, kRounds = 6, kCutRounds = 40, kUnfoldRounds = 12;
+constexpr int kEvenRounds = 4, kRounds = 6, kCutRounds = 40, kUnfoldRounds = 12, kPartRounds = 6;
 constexpr double kFarthest = 2;   // spacings that a point may go from where the voxels have it
 constexpr double kMostOut = 0.1;  // spacings, of a cut's rim above the surface
 constexpr int kSlidingRings = 4;  // around a cut, of points that make room for its rim
@@ -107,14 +108,26 @@ class Placer {
         if (!warp_.is_none()) roughen();
         make_up_volume();
         unfold();
-        if (part_all()) {
-            make_up_volume();
-            if (any_broke(matter_, surface_)) part_all();
-        }
+        part_and_fill();
         return {std::move(place_), std::move(start_), std::move(rest_)};
     }
 
   private:
+    // What parts crossings takes or adds volume, and what makes that up may cross anew: of what
+    // does not cross, that with the least error stays.
+    void part_and_fill() {
+        std::vector<Vec3> best;
+        double least = std::numeric_limits<double>::infinity();
+        for (int round = 0; round < kPartRounds; ++round) {
+            const bool any = part_all();
+            const double off = std::abs(matter_.volume() - volume());
+            if (off < least) least = off, best = place_;
+            if (!any) break;
+            make_up_volume();
+        }
+        place_ = std::move(best);
+    }
+
     // In parts hardly wider than a cell places at rest may cross; the voxels never do.
     bool part_all() {
         const bool any = part_crossings(facets(), rest_, blade_, a_, place_);

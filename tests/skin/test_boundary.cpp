@@ -206,6 +206,25 @@ TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all i
     }
 }
 
+TEST_CASE("a severed body that stands askew has all its volume") {
+    const int across = GENERATE(3, 4);
+    const Vec3 half(.6, .5, .7), normal = GENERATE(Vec3(1, .31, -.44), Vec3(.3, 1, .8));
+    const Quat pose = Eigen::AngleAxisd(.5, Vec3::UnitX()) * Eigen::AngleAxisd(.6, Vec3::UnitY()) *
+                      Eigen::AngleAxisd(.4, Vec3::UnitZ());
+    CAPTURE(across, normal);
+    Aggregate matter = test::make_shape(
+        [&](const Vec3& p) {
+            const Vec3 q = (pose.conjugate() * p).cwiseAbs() - half;
+            return q.maxCoeff() > 0 ? q.cwiseMax(0.).norm() : q.maxCoeff();
+        },
+        Vec3::Constant(-1.2), Vec3i::Constant(int(std::ceil(2.4 * across))), 1. / across);
+    test::sever_plane(matter, Vec3(.0371, .011, -.0083), normal.normalized());
+    const TriMesh mesh = test::boundary_now(matter);
+    CHECK(test::is_closed(mesh));
+    CHECK(surface_components(mesh).count == 2);
+    CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(.03));
+}
+
 TEST_CASE(
     "where a blade passes close above the surface, what it cuts off elsewhere does not reach") {
     // A ball's cap is cut off; beside it the blade goes over a rod, through cells that hold nothing
