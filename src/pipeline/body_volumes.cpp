@@ -13,9 +13,16 @@ std::vector<BodyVolume> body_volumes(const std::vector<WorkPiece>& bodies) {
     std::vector<BodyVolume> volumes;
     for (const WorkPiece& body : bodies) {
         volumes.push_back({present_volume(body.matter), flowed_volume(body.matter),
-                           enclosed_volume(body.skin, body.position)});
+                           enclosed_volume(body.skin, body.position), boundary_off(body)});
     }
     return volumes;
+}
+
+std::optional<double> boundary_off(const WorkPiece& body) {
+    if (!body.look) return {};
+    const std::optional<double> skin = enclosed_volume(body.skin, body.skin.position);
+    if (!skin) return {};
+    return *skin / body.matter.volume() - 1;
 }
 
 Json volumes_json(const std::vector<WorkPiece>& bodies, const std::vector<BodyVolume>& at_start) {

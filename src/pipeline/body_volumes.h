@@ -12,11 +12,16 @@
 namespace swage {
 
 struct BodyVolume {
-    double matter;               // present_volume() [m3]
-    double flowed;               // flowed_volume()
-    std::optional<double> skin;  // what it encloses, where it is closed [m3]
+    double matter;                   // present_volume() [m3]
+    double flowed;                   // flowed_volume()
+    std::optional<double> skin;      // what it encloses, where it is closed [m3]
+    std::optional<double> off = {};  // boundary_off()
 };
 std::vector<BodyVolume> body_volumes(const std::vector<WorkPiece>& bodies);
+
+// By what share of its volume a boundary encloses more than its matter (below 0: less) as it was
+// made, where that is known. Of other skins nothing.
+std::optional<double> boundary_off(const WorkPiece& body);
 
 // By body, as a stage began and now.
 Json volumes_json(const std::vector<WorkPiece>& bodies, const std::vector<BodyVolume>& at_start);

@@ -9,8 +9,11 @@
 
 namespace swage {
 
-// A sentence for each boundary that as it was made encloses a hundredth more or less than its
-// matter.
+// Of one of these bodies whose boundary as it was made encloses a hundredth more or less than its
+// matter: that, and why. Else empty.
+std::string boundary_note(const std::vector<WorkPiece>& bodies, const WorkPiece& body);
+
+// Of all that have one.
 std::vector<std::string> boundary_notes(const std::vector<WorkPiece>& bodies);
 
 }  // namespace swage

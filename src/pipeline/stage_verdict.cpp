@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "machines/start_notes.h"
 #include "pipeline/books_verdict.h"
+#include "pipeline/boundary_note.h"
 #include "sim/cell_volume.h"
 #include "sim/flowed_volume.h"
 #include "sim/gripped_pieces.h"
@@ -161,6 +162,15 @@ std::string stretched(const StageEnd& end, std::size_t b) {
         end.totals.severed > 0 ? "before the cut" : "as the stage began");
 }
 
+// A boundary that the stage has left off its matter's volume; what was so has been told.
+std::string boundary_left_off(const StageEnd& end, std::size_t b) {
+    constexpr double kSame = 1e-3;
+    const double before = end.volumes_before[b].off.value_or(0);
+    const double off = boundary_off(end.bodies[b]).value_or(0);
+    if (std::abs(off - before) < kSame) return {};
+    return boundary_note(end.bodies, end.bodies[b]);
+}
+
 // What has cracked does not know inside from outside.
 std::string inside_out(const StageEnd& end, const WorkPiece& piece) {
     const std::size_t cells = cracked_inside_out(piece.matter);
@@ -276,8 +286,9 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     for (const std::string& one : judge_books(end)) warn(one);
     for (std::size_t b = 0; b < end.bodies.size(); ++b) {
         if (ended == StageEnded::interrupted) break;
-        for (const std::string& told : {swollen(end, end.bodies[b]), stretched(end, b),
-                                        shrunk(end, b), inside_out(end, end.bodies[b])}) {
+        for (const std::string& told :
+             {swollen(end, end.bodies[b]), stretched(end, b), boundary_left_off(end, b),
+              shrunk(end, b), inside_out(end, end.bodies[b])}) {
             if (!told.empty()) warn(told);
         }
     }

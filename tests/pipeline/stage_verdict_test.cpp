@@ -344,3 +344,34 @@ TEST_CASE("a skin that is stretched from piece to piece is told of, by a cut and
     piece.look = std::make_shared<NewLook>(piece.skin);  // a boundary is made anew then
     CHECK_FALSE(told(1.02, 0));
 }
+
+TEST_CASE("a boundary that breaks leave off its matter's volume is told of, once") {
+    CutBar bar("copper");
+    WorkPiece& piece = bar.bodies[0];
+    piece.skin = box_mesh({-.1, -.025, -.025}, {.1, .025, .025});
+    piece.position = piece.skin.position;
+    piece.look = std::make_shared<NewLook>(piece.skin);
+    test::sever_plane(piece.matter, {.003, 0, 0}, Vec3::UnitX());
+    for (ConnectionArrays& all : piece.matter.connection) {
+        all.damage.assign(piece.matter.particle_count(), 0.0f);
+        for (std::size_t p = 0; p < all.damage.size(); ++p) {
+            if (all.weight[p] <= 0) all.damage[p] = 1;
+        }
+    }
+    FrameReport last;
+    last.pieces = 2;
+    last.plastic = 1;
+    const auto told = [&](double longer) {
+        bar.volumes_before.clear();
+        return bar.told_of(bar.reading.scene->stage[0], last, 1, 0, [&] {
+            for (Vec3& p : piece.skin.position) p.x() *= longer;
+        });
+    };
+    CHECK(told(1.005).find("the boundary of") == std::string::npos);
+    CHECK(told(1.02).find("encloses 2.5 % more than its matter: it was made anew around the "
+                          "pieces") != std::string::npos);
+    CHECK(told(1).find("the boundary of") == std::string::npos);  // it was so before
+    CHECK(told(.95).find("encloses 2.6 % less than its matter") != std::string::npos);
+    piece.look = nullptr;
+    CHECK(told(1.1).find("the boundary of") == std::string::npos);
+}
