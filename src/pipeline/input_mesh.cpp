@@ -12,6 +12,7 @@
 #include "pipeline/body_look.h"
 #include "pipeline/start_warnings.h"
 #include "render/image_read.h"
+#include "skin/new_look.h"
 
 namespace swage {
 
@@ -98,6 +99,10 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
 InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle, bool looks) {
     InputMesh input = read_mesh_as_it_is(spec.file, spec.length, crease_angle, looks);
     log_info("{}: {}", spec.file.filename().string(), summary_line(input.report));
+    // Whatever its name, a file's own is no cut's look.
+    for (SurfaceMaterial& look : input.mesh.material) {
+        if (is_cut_look(look)) look.name.insert(std::string(kCutMaterial).size(), ".2");
+    }
     make_solid(input, kind, crease_angle);
     return input;
 }

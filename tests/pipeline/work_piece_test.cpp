@@ -300,6 +300,25 @@ TEST_CASE("a mesh whose bodies are sound is taken as it is") {
     CHECK(input.mesh.triangle == mesh.triangle);
 }
 
+TEST_CASE("a file's own look that is called as a cut's is another") {
+    TriMesh mesh = together(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({2, 0, 0}, {3, 1, 1}));
+    const std::string name = GENERATE("cut", "cut_lead", "cut_");
+    mesh.material = {{.name = "painted"}, {.name = name, .color = {0.1, 0.2, 0.3}}};
+    // Colours of one alone, which has the other take none.
+    for (const Vec3& p : mesh.position) {
+        mesh.position_color.push_back(Eigen::Vector3f(1, p.x() < 1.5 ? 0.5f : 1, 1));
+    }
+    for (const Corners& t : mesh.triangle) {
+        mesh.triangle_material.push_back(mesh.position[t[0]].x() > 1.5);
+    }
+    TriMesh read = read_from_file(mesh).mesh;
+    const auto own = std::ranges::find(read.material, false, &SurfaceMaterial::takes_colors);
+    REQUIRE(own != read.material.end());
+    CHECK_FALSE(is_cut_look(*own));
+    CHECK(inside_material(read, {.name = name, .takes_colors = false}) == 2);
+    CHECK(is_cut_look(read.material[2]));
+}
+
 TEST_CASE("an inset that a body cannot have is told where the scene names it") {
     const Scratch scratch;
     InputMesh input;
