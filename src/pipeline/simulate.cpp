@@ -41,8 +41,8 @@ Reached molded(const SimulationContext& context, StartWarnings at_start) {
         const Aggregate& matter = bodies[b].matter;
         found.push_back(bodies[b].finding);
         made.push_back(
-            {fmt::format("{} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",
-                         matter.cell_fill.size(), 1e3 * matter.lattice.spacing,
+            {fmt::format("{} cells of {}, {} particles, {} connections, {:.4g} kg",
+                         matter.cell_fill.size(), length_text(matter.lattice.spacing),
                          matter.particle_count(), matter.connection_count(), matter.mass())});
         divided.emplace_back();
         if (const std::string text = division_text(bodies[b], input[b]); !text.empty()) {
