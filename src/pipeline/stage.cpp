@@ -17,6 +17,7 @@
 #include "pipeline/limit_watch.h"
 #include "pipeline/machine_place.h"
 #include "pipeline/motion_note.h"
+#include "pipeline/passed_watch.h"
 #include "pipeline/piece_fields.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
@@ -33,6 +34,7 @@
 #include "pipeline/warning_book.h"
 #include "scene/product_names.h"
 #include "sim/advance.h"
+#include "sim/blade_way.h"
 #include "sim/given_up.h"
 #include "sim/sever.h"
 #include "skin/cut_mesh.h"
@@ -256,10 +258,12 @@ class StageRun {
                 throw_if_interrupted();
                 if (legs > 0) follow_on_the_way();
                 plan_cuts(simulation, number);
+                const PassedWatch uncut(bodies_, cuts_, machine_.apparatus, stage_.sim);
                 FrameReport report = [&] {
                     const auto lap = context_.watch.lap("simulate");
                     return simulation.advance(way_.now(), way_.next(), way_.between());
                 }();
+                totals_.passed += uncut.count_passed(way_.now(), way_.next());
                 if (report.severed > 0) hold_skins();
                 if (report.stop) {
                     stop(*report.stop, simulation, number);
@@ -324,26 +328,35 @@ class StageRun {
     void plan_cuts(Simulation& simulation, int number) {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
             if (cuts_[b]) continue;
-            if (!simulation.blades_reach(b, way_.leg_ahead())) {
-                look_for_blades(b);
+            const std::vector<Drive> leg = way_met(b, way_.leg_ahead());
+            if (!simulation.blades_reach(b, leg)) {
+                look_for_blades(b, leg);
                 continue;
             }
             settle(simulation, b, number);
         }
     }
 
+    // The blades' way as a body meets it: where nothing holds that, it flies on.
+    std::vector<Drive> way_met(std::size_t b, std::span<const Drive> way) const {
+        const bool flies = cuts_any() && in_motion(stage_.sim.solver) &&
+                           !is_gripped(machine_.apparatus, b) && !(last_.body[b].contact > 0);
+        if (flies) return way_in_flight(bodies_[b].matter, machine_.apparatus, way);
+        return {way.begin(), way.end()};
+    }
+
     void settle(Simulation& simulation, std::size_t b, int number) {
-        const bool is_cut = settle_cut(machine_, way_.ahead(), way_.steps(), b, simulation,
-                                       bodies_[b], number, warnings_);
+        const bool is_cut = settle_cut(machine_, way_met(b, way_.ahead()), way_.steps(), b,
+                                       simulation, bodies_[b], number, warnings_);
         cuts_[b] = is_cut ? kCut : kGrazed;
         if (!is_cut) totals_.entered = bodies_[b].matter.lattice.spacing;
     }
 
     // Where nothing is severed: whether there is matter that blades go into on this leg.
-    void look_for_blades(std::size_t b) {
+    void look_for_blades(std::size_t b, std::span<const Drive> leg) {
         if (!cuts_any() || totals_.entered > 0 || totals_.severed > 0) return;
         const Aggregate& matter = bodies_[b].matter;
-        if (enters_matter(swept_triangles(machine_.apparatus, way_.leg_ahead()), matter)) {
+        if (enters_matter(swept_triangles(machine_.apparatus, leg), matter)) {
             totals_.entered = matter.lattice.spacing;
         }
     }

@@ -182,6 +182,14 @@ std::string inside_out(const StageEnd& end, const WorkPiece& piece) {
         cells == 1 ? "bears" : "bear");
 }
 
+// What moves past an edge between two places of its way is not swept by it.
+std::string carried_past(const std::string& passed, bool one) {
+    return fmt::format(
+        "{} passed the edge uncut, as the body itself moved {} past it: move the blade faster than "
+        "the body, or let the body fly freely against its way (more frames do not help)",
+        passed, one ? "it" : "them");
+}
+
 // Why no blade has severed anything: what goes through a cell may pass between its particles.
 std::string why_nothing_is_cut(const StageEnd& end) {
     std::size_t standing = 0;
@@ -192,6 +200,11 @@ std::string why_nothing_is_cut(const StageEnd& end) {
             "blades cut only by their own motion, and {}: what moves against {} is not cut",
             blades == 1 ? "this one stands still" : "these stand still",
             blades == 1 ? "it" : "them");
+    }
+    const std::size_t passed = end.totals.passed;
+    if (passed > 0) {
+        return "the blade severed nothing: " +
+               carried_past(counted(passed, "connection", "connections"), passed == 1);
     }
     if (end.totals.entered == 0) {
         return "the blade met no matter: it passed beside the work-piece or through a gap in it";
@@ -274,10 +287,12 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
         warn(why_nothing_is_cut(end));
     }
     if (whole && end.totals.severed > 0 && piece_count(end.bodies) == pieces_before) {
-        warn(
-            fmt::format("the blade severed {} connections but separated nothing: owing to its "
-                        "place, width or path it passed through only a part of the work-piece",
-                        end.totals.severed));
+        const std::size_t passed = end.totals.passed;
+        warn(fmt::format(
+            "the blade severed {} connections but separated nothing: {}", end.totals.severed,
+            passed > 0 ? carried_past(counted(passed, "other", "others"), passed == 1)
+                       : "owing to its place, width or path it passed through only a part of the "
+                         "work-piece"));
     }
     if (whole) {
         for (const std::string& one : idle_parts(end)) warn(one);

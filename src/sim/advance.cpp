@@ -12,6 +12,7 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
+#include "sim/blade_way.h"
 #include "sim/block_steps.h"
 #include "sim/cell_flow.h"
 #include "sim/crumbs.h"
@@ -194,14 +195,16 @@ Simulation::Rooms::Cut Simulation::Rooms::cut(std::size_t b, const Drive& from, 
     WorkedBody& at = body[b];
     std::vector<SeverEvent> events;
     Cut cut;
+    std::vector<Drive> way = {from, to};
     if (at.plan.empty()) {
-        events = crossed(*at.matter, std::array{from, to});
+        events = crossed(*at.matter, way);
         if (events.empty()) return {};
-        name_blades(events, *at.matter, apparatus, std::array{from, to});
-        at.sides = sides_of(*at.matter, events, swept_triangles(apparatus, std::array{from, to}));
+        name_blades(events, *at.matter, apparatus, way);
+        at.sides = sides_of(*at.matter, events, swept_triangles(apparatus, way));
     } else {
         if (moves()) {
-            mark_met(at.plan, *at.matter, swept_triangles(apparatus, std::array{from, to}),
+            if (!is_gripped(apparatus, b)) way = way_in_flight(*at.matter, apparatus, way);
+            mark_met(at.plan, *at.matter, swept_triangles(apparatus, way),
                      kBeside * at.matter->lattice.spacing);
         }
         events = std::move(at.plan.front());

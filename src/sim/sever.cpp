@@ -32,7 +32,7 @@ bool edge_side(const Vec3& from, const Vec3& to, const Vec3& p, const Vec3& q) {
     return before(p, q) ? volume6(from, to, p, q) >= 0 : !(volume6(from, to, q, p) >= 0);
 }
 
-bool crosses(const Vec3& from, const Vec3& to, const Triangle& t) {
+bool crosses_triangle(const Vec3& from, const Vec3& to, const Triangle& t) {
     const bool from_side = volume6(t[0], t[1], t[2], from) >= 0;
     const bool to_side = volume6(t[0], t[1], t[2], to) >= 0;
     if (from_side == to_side) return false;
@@ -107,7 +107,7 @@ class SweptSurface {
         const Box own = {from.cwiseMin(to), from.cwiseMax(to)};
         if (!own.overlaps(all_)) return false;
         for (std::size_t t = 0; t < triangle_.size(); ++t) {
-            if (own.overlaps(box_[t]) && swage::crosses(from, to, triangle_[t])) return true;
+            if (own.overlaps(box_[t]) && crosses_triangle(from, to, triangle_[t])) return true;
         }
         return false;
     }
@@ -119,6 +119,10 @@ class SweptSurface {
 };
 
 }  // namespace
+
+bool crosses(const std::vector<Triangle>& swept, const Vec3& from, const Vec3& to, double spacing) {
+    return SweptSurface(swept, spacing).crosses(from, to);
+}
 
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<Triangle>& swept) {

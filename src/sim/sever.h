@@ -35,6 +35,10 @@ std::vector<std::array<Vec3, 3>> swept_triangles(const Apparatus& apparatus,
 // The same as a mesh, without what a blade at rest sweeps.
 TriMesh swept_mesh(const std::vector<std::array<Vec3, 3>>& swept);
 
+// Whether the surface crosses what lies between two points of matter of this spacing.
+bool crosses(const std::vector<std::array<Vec3, 3>>& swept, const Vec3& from, const Vec3& to,
+             double spacing);
+
 // The unsevered connections that the surface crosses, in the order of the lattice.
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<std::array<Vec3, 3>>& swept);

@@ -73,6 +73,42 @@ TEST_CASE("of a blade that stands while a body flies through it that is said, no
     CHECK(!says(outcome.err, "met no matter"));
 }
 
+TEST_CASE("what flies against a slow blade is cut; what grips carry past it uncut is told of") {
+    const auto told = [](const std::string& grip, const std::string& keys) {
+        const Scratch scratch;
+        fs::create_directory(scratch.path() / "machines");
+        put_text(scratch.path() / "machines/slow.toml",
+                 "help = \"a slow blade\"\n[[blade]]\nname = \"blade\"\n"
+                 "edge = [[0, \"1.5*height\", \"-width\"], [0, \"1.5*height\", \"width\"]]\n"
+                 "[blade.motion]\nmove = [0, \"-0.1*height*t\", 0]\n" +
+                     grip);
+        swage::write_obj(scratch.path() / "body.obj", kBar);
+        put_text(scratch.path() / "scene.toml",
+                 "[mesh]\nfile = \"body.obj\"\n" + keys +
+                     "[material]\nname = \"rubber\"\n[mold]\nacross = 2\n[[stage]]\n"
+                     "machine = \"slow\"\nframes = 40\nsolver = \"explicit\"\n"
+                     "duration = \"10 ms\"\n");
+        const Outcome outcome =
+            run_swage({"run", "scene.toml", "--out", "run", "--no-render"}, scratch.path());
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        return outcome.err;
+    };
+    const std::string flown = told("", "velocity = [0, 8, 0]\n");
+    INFO(flown);
+    CHECK(!says(flown, "sever"));
+    CHECK(!says(flown, "met no matter"));
+    const std::string carried = told(
+        "[[grip]]\nname = \"all\"\nfrom = [\"-length\", \"-height\", \"-width\"]\n"
+        "to = [\"length\", \"height\", \"width\"]\n[grip.motion]\n"
+        "move = [0, \"4*height*t\", 0]\n",
+        {});
+    INFO(carried);
+    CHECK(says(carried, " passed the edge uncut, as the body itself moved them past it"));
+    CHECK(!says(carried, "owing to its place"));
+    CHECK(!says(carried, "met no matter"));
+}
+
 TEST_CASE("a blade is said to have gone into what was there when it passed, not what came later") {
     // It falls beyond the bar's end; then the bar is drawn to where it was.
     const auto told = [&](const char* place) {

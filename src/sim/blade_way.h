@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The way that blades take through matter which itself moves.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+
+namespace swage {
+
+// The blades' way as a body meets it that flies on as it does now (way[0]): each blade is farther
+// on its own way by as much as the body has come against it along that. A blade cuts by its own
+// motion, so what comes along with it or across it adds nothing, and nothing adds to one that
+// rests. That of a body at rest is as given.
+std::vector<Drive> way_in_flight(const Aggregate& matter, const Apparatus& apparatus,
+                                 std::span<const Drive> way);
+
+bool is_gripped(const Apparatus& apparatus, std::size_t body);
+
+// How many unsevered connections have gone past an edge, or it past them, on this way since their
+// particles were at `before`.
+std::size_t count_passed(const Aggregate& matter, const Vec3Array& before,
+                         const Apparatus& apparatus, const Drive& from, const Drive& to);
+
+}  // namespace swage
