@@ -124,7 +124,8 @@ std::string miss_note(const Machine& machine, std::size_t n, const std::vector<P
     }
     if (nearest == 0) return "";
     return fmt::format(
-        "blade {} misses the work-piece where that is now, by at least {}: it will cut nothing",
+        "blade {} misses the work-piece where that is now, by at least {}: it will cut nothing "
+        "unless that moves there",
         blade.name, length_of(nearest + slack));
 }
 
