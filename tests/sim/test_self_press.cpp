@@ -272,7 +272,9 @@ TEST_CASE("points that are let be meet their body no more, whatever is taken bac
     CHECK(deep > 0);
     CHECK(deep < all);
     CHECK(self.let_be(0.5 * deepest) == 0);
+    shut(0);  // where it began
     self.take_back();
+    shut(0.05 + 0.3 * kSpacing);
     REQUIRE(self.presses());
     CHECK(self.pressed().size() == std::size_t(all - deep));
     CHECK(self.sums().penetration < 0.7 * deepest);
