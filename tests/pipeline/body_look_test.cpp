@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/body_look.h"
 
+#include <fstream>
+
 #include "geometry/make_shape.h"
 #include "geometry/mesh_write.h"
 #include "pipeline/work_piece.h"
@@ -131,8 +133,8 @@ TEST_CASE(
     const Scratch scratch;
     TriMesh mesh = bar(true).mesh;
     mesh.position_color.assign(mesh.position.size(), Eigen::Vector3f(1, 0, 0));
-    
     write_obj(scratch.path() / "bar.obj", mesh);
+    std::ofstream(scratch.path() / "bar.mtl", std::ios::app) << "map_Kd gone.png\n";
     write_png(scratch.path() / "cow.png", {1, 1, {1, 2, 3}});
     SceneSpec scene;
     scene.body = {body_of(kIce), body_of(kIce)};
@@ -144,8 +146,7 @@ TEST_CASE(
     scene.body[0].mesh.texture = scratch.path() / "cow.png";
     const std::vector<InputMesh> input = read_input_meshes(scene);
     CHECK(input[0].finding.empty());
-    CHECK(input[1].finding.size() ==
-          2);  // its image is missing, and that hides the material's look
+    CHECK(input[1].finding.size() == 2);  // the image is missing; the material's look is hidden
     for (const SkinKind kind : {SkinKind::mount, SkinKind::boundary}) {
         const WorkPiece piece = make_work_piece(input[0], scene.body[0], {kind});
         REQUIRE(piece.skin.material.size() == 1);
