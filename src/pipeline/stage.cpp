@@ -329,11 +329,11 @@ class StageRun {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
             if (cuts_[b]) continue;
             const std::vector<Drive> leg = way_met(b, way_.leg_ahead());
-            if (!simulation.blades_reach(b, leg)) {
+            if (simulation.blades_reach(b, leg)) {
+                settle(simulation, b, number);
+            } else {
                 look_for_blades(b, leg);
-                continue;
             }
-            settle(simulation, b, number);
         }
     }
 

@@ -118,10 +118,13 @@ TEST_CASE("an export has the camera and lamp of a drawing with the same options"
     REQUIRE(run_swage({"export", run.string(), "--size", "90x160"}).code == 0);
     const std::string upright = bytes_of(run / "usd/small.usda");
     CHECK(line_of(upright, "verticalAperture") != line_of(asked, "verticalAperture"));
-    CHECK(exported(one, "", {"--camera-follow"}) ==
-          exported(other, "[render.camera]\nfollow = true\n", {}));
-    CHECK(exported(one, "", {}) ==
-          exported(other, "[render.camera]\nfollow = true\n", {"--no-camera-follow"}));
+    const fs::path third = scratch.path() / "third";
+    const std::string follow = "[render.camera]\nfollow = true\n",
+                      follows = exported(third, follow, {});
+    CHECK(exported(one, "", {"--camera-follow"}) == follows);
+    const std::string stays = exported(one, "", {});
+    CHECK(exported(third, follow, {"--no-camera-follow"}) == stays);
+    CHECK(stays != follows);
     CHECK(run_swage({"export", run.string(), "--camera-eye", "1", "1", "1"}).code == 2);
     CHECK(run_swage({"export", run.string(), "--camera-elevation", "91"}).code == 2);
 }
