@@ -355,9 +355,8 @@ class StageRun {
     // Where nothing is severed: whether there is matter that blades go into on this leg.
     void look_for_blades(std::size_t b, std::span<const Drive> leg) {
         if (!cuts_any() || totals_.entered > 0 || totals_.severed > 0) return;
-        const Aggregate& matter = bodies_[b].matter;
-        if (enters_matter(swept_triangles(machine_.apparatus, leg), matter)) {
-            totals_.entered = matter.lattice.spacing;
+        if (enters_matter(swept_triangles(machine_.apparatus, leg), bodies_[b].matter)) {
+            totals_.entered = bodies_[b].matter.lattice.spacing;
         }
     }
 
