@@ -2,8 +2,7 @@
 #include "sim/advance.h"
 #include "sim/blade_way.h"
 #include "tests/catch.h"
-#include "tests/shared/block.h"
-#include "tests/sim/motion.h"
+#include "tests/sim/flying_block.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -24,18 +23,15 @@ struct Passage {
 };
 
 Passage pass_slow_blade(const Vec3& speed, int frames, double duration, bool flies = true) {
-    Aggregate block = make_block(6, 6, 2, 0.02, kSpringy);
-    for (std::size_t p = 0; p < block.particle_count(); ++p) block.particle_velocity.set(p, speed);
-    Apparatus apparatus;
-    apparatus.name = "cut";
-    apparatus.blade.push_back({"blade", {Vec3(0.003, 0, -1), Vec3(0.003, 0, 1)}, {}});
+    FlyingBlock flying(speed);
+    auto& [block, apparatus] = flying;
     std::vector<Drive> way;
     for (int n = 0; n <= frames; ++n) {
         const double time = duration * n / frames;
-        way.push_back(still(time));
-        way.back().world_from_blade = {Pose{Quat::Identity(), Vec3(0, 0.1 - time, 0)}};
+        way.push_back(FlyingBlock::with_edge_at(0.1 - time, time));
     }
-    const auto met = [&](std::size_t from, std::size_t count) {
+    const auto met = [&, &block = block, &apparatus = apparatus](std::size_t from,
+                                                                 std::size_t count) {
         const auto part = std::span<const Drive>(way).subspan(from, count);
         return flies ? way_in_flight(block, apparatus, part)
                      : std::vector<Drive>(part.begin(), part.end());

@@ -9,6 +9,7 @@
 #include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/flying_block.h"
 #include "tests/sim/motion.h"
 #include "tests/sim/pulled_bar.h"
 
@@ -368,15 +369,11 @@ struct FlownCut {
 // A blade comes down x = 0 by 2 cm a frame, beside which a body of 2 cm cells flies at this speed.
 // The cut is planned where they meet.
 FlownCut cut_in_flight(const Vec3& speed, Solver solver) {
-    Aggregate block = make_block(6, 6, 2, 0.02, kSpringy);
-    for (std::size_t p = 0; p < block.particle_count(); ++p) block.particle_velocity.set(p, speed);
-    Apparatus apparatus;
-    apparatus.name = "cut";
-    apparatus.blade.push_back({"blade", {Vec3(0.003, 0, -1), Vec3(0.003, 0, 1)}, {}});
+    FlyingBlock flying(speed);
+    auto& [block, apparatus] = flying;
     std::vector<Drive> way;
     for (int n = 0; n <= 8; ++n) {
-        way.push_back(still(0.01 * n));
-        way.back().world_from_blade = {Pose{Quat::Identity(), Vec3(0, 0.07 - 0.02 * n, 0)}};
+        way.push_back(FlyingBlock::with_edge_at(0.07 - 0.02 * n, 0.01 * n));
     }
     Simulation simulation(block, apparatus, motion_settings(solver));
     simulation.plan_cuts(0, way, 1);
