@@ -20,6 +20,10 @@ constexpr double kDriven = 0.03;  // of what drives a body along as it buckles m
 constexpr double kFinest = 1e-4;  // of the tolerance: less is never asked for
 constexpr double kWithin = 0.1;   // of a motion along the surface: what it goes across
 constexpr double kAstray = 0.01;  // of the way that the body has gone
+// Of what flows, what leading it aside strains it by: of what varies as straight as a beam's
+// strain, no end is more than twice the mean, of a wave along it no crest more than pi/2 times.
+constexpr double kLed = 0.3;
+constexpr double kLedEnough = 0.3;  // spacings
 
 // Share of the drag that Newton's method goes ahead with, and that stays when it is found to hold
 // the body back.
@@ -127,6 +131,16 @@ double farthest_astray(const Aggregate& matter, double gone) {
     return kAstray * (gone + kNudge * matter.lattice.spacing);
 }
 
+// The share of a motion in how far the body has gone from `start`.
+double gone_by(const Aggregate& matter, const Vec3Array& motion, const Vec3Array& start) {
+    const std::vector<double>& mass = matter.particle_mass;
+    const Vec3Array& x = matter.particle_position;
+    const double gone = chunked_sum(
+        x.size(), [&](std::size_t p) { return mass[p] * motion.at(p).dot(x.at(p) - start.at(p)); });
+    return gone / chunked_sum(x.size(),
+                              [&](std::size_t p) { return mass[p] * motion.at(p).squaredNorm(); });
+}
+
 void look_around(StaticForces& forces, const Drive& to) {
     forces.contacts.find_candidates(forces.matter, to);
     forces.self.meet_anew();
@@ -203,6 +217,25 @@ Relaxation EquilibriumSearch::relax(StaticForces& forces, const StaticMove& move
     }
 }
 
+// What flows and would buckle by its tangent modulus is led aside until it goes by itself.
+bool EquilibriumSearch::lead_aside(Aggregate& matter, StaticMove& move, Relaxation& result) {
+    if (!matter.yields() || matter.cell_history.empty()) return false;
+    const Vec3Array& way = newton_->softest_motion();
+    const FlowAside flow(matter, way);
+    if (!newton_->buckles_in_flow(flow) || keeps_the_shape(matter, way)) return false;
+    const double gone = gone_by(matter, way, begun_at_);
+    if (std::abs(gone) * longest_of(way) > kLedEnough * matter.lattice.spacing) {
+        result.buckled = result.buckled || std::exchange(is_led_, false);
+        return false;
+    }
+    is_led_ = true;
+    move.history = matter.cell_history;
+    const double by = std::copysign(kLed * flow.as_far_as_flow(), gone);
+    flow.commit(matter, by);
+    combine(1, by, way, matter.particle_position);
+    return true;
+}
+
 // A body that buckles is moved the way it wants to go, as far as the forces drive it there, and
 // comes to rest from there. What a slender body's push leaves over may be nothing beside the push,
 // and yet take it far: then less has to be left.
@@ -218,15 +251,16 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         result = {next.converged, result.iterations + next.iterations, next.residual, next.falls,
                   result.buckled || next.buckled};
     };
-    const auto leave_less = [&] {
+    // Or stays where it was.
+    const auto try_again = [&](double wanted, const Vec3Array& there) {
         const Relaxation rest = result;
-        const Vec3Array there = x;
-        again(0.1 * accuracy);
+        again(wanted);
         if (result.converged) return true;
         x = there;
         result = {true, result.iterations, rest.residual, false, rest.buckled};
         return false;
     };
+    const auto leave_less = [&] { return try_again(0.1 * accuracy, Vec3Array(x)); };
     // What was cut, or lost its grips, has no push to measure by, and a tangent only where Newton's
     // method serves.
     const bool tried = move.let_go && !newton_ && !forces.touches();
@@ -236,12 +270,21 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         const double gone = farthest(forces, begun_at_);
         if (farthest(forces, before) <= farthest_astray(matter, gone)) break;
     }
+    bool led = false;
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(forces.apparatus) || forces.self.presses()) break;
         if (foam_wrinkles(matter)) break;
         const NewtonProblem problem = buckling_problem(forces, move.to, accuracy);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
         if (!newton_->buckles(matter, problem, forces.push_measure(move.to))) {
+            const Vec3Array there = x;
+            if (!led && lead_aside(forces.matter, move, result)) {
+                led = true;
+                if (!try_again(accuracy, there)) {
+                    forces.matter.cell_history = std::exchange(move.history, {});
+                }
+                continue;
+            }
             if (forces.touches() || accuracy < kFinest * tolerance_) break;
             const double hold = std::exchange(forces.hold, 0);  // it holds back what is left over
             forces.find(move.to);

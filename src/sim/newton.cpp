@@ -342,6 +342,10 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem, doub
     return leaves_rest(left);
 }
 
+bool Newton::buckles_in_flow(const FlowAside& flow) const {
+    return leaves_rest(softest_.left() - flow.borne());
+}
+
 // NOTE: along one motion, for what tools carry along as they go says nothing of how far a neck or a
 // slender body has come by itself.
 Newton::Astray Newton::astray(const Aggregate& matter, const NewtonProblem& problem,

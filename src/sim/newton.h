@@ -10,6 +10,7 @@
 
 #include "matter/aggregate.h"
 #include "sim/cell_tangent.h"
+#include "sim/flow_aside.h"
 #include "sim/held_point.h"
 #include "sim/multigrid.h"
 #include "sim/soft_mode.h"
@@ -45,6 +46,8 @@ class Newton {
     // slightest touch; by which motion.
     bool buckles(const Aggregate& matter, const NewtonProblem& problem, double load);
     const Vec3Array& softest_motion() const { return softest_.motion(); }
+    // Where it does not: whether it would by this motion if what flows bore only what it does.
+    bool buckles_in_flow(const FlowAside& flow) const;
     // Whether in the last solution it gave way so, near rest, and has gone from `start` most of all
     // by the motion that it gave way to.
     bool has_gone_over(const Aggregate& matter, const Vec3Array& start) const;

@@ -167,6 +167,7 @@ StaticMove QuasistaticSolver::begin_move(const Drive& from, const Drive& to, int
 // Returns what the work-piece no longer holds there [J].
 double QuasistaticSolver::put_back(const StaticMove& move) {
     matter_.particle_position = move.start;
+    if (!move.history.empty()) matter_.cell_history = move.history;
     foresight_.forget();
     return forces_.self.take_back();
 }

@@ -32,6 +32,7 @@ class SoftMode {
                   const Map& solve, double load = 0);
 
     const Vec3Array& motion() const { return found_.motion; }  // the matter's own of it is 1
+    double left() const { return found_.left; }
 
     template <typename Io>
     void visit(Io& io) {  // what steps change

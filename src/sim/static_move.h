@@ -2,6 +2,7 @@
 // What a solver of equilibria knows of one move, and what a try at its end has come to.
 #pragma once
 
+#include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/drive_motion.h"
 
@@ -14,9 +15,10 @@ struct StaticMove {
     Vec3Array start, rest{};
     double elastic = 0, booked = 0;  // before it, where that is asked for [J]
     DriveMotion motion{};
-    bool released = false;  // a load grows less, or a tool draws back
-    bool let_go = false;    // nothing moves, but what was cut or lost its grips
-    double seated = 0;      // the farthest that any piece was seated before the try [m]
+    bool released = false;    // a load grows less, or a tool draws back
+    bool let_go = false;      // nothing moves, but what was cut or lost its grips
+    CellHistories history{};  // before it, where what has flowed was changed since
+    double seated = 0;        // the farthest that any piece was seated before the try [m]
 };
 
 struct Relaxation {
