@@ -103,11 +103,15 @@ std::string range_text(const CostRange& range, std::string (*text)(double)) {
     return text(range.least) + " to " + text(range.most);
 }
 
+bool says(const SceneSpec& scene, std::size_t stage, std::string_view key) {
+    const std::string whole = fmt::format("stage.{}.{}", stage + 1, key);
+    return std::any_of(scene.said.begin(), scene.said.end(),
+                       [&](const Said& one) { return one.key == whole; });
+}
+
 // Why a stage has its solver where the scene does not name it; empty: it does.
 std::string why_solver(const SceneSpec& scene, std::size_t n) {
-    const std::string key = fmt::format("stage.{}.solver", n + 1);
-    const auto says = [&](const Said& one) { return one.key == key; };
-    if (std::any_of(scene.said.begin(), scene.said.end(), says)) return {};
+    if (says(scene, n, "solver")) return {};
     const StageSpec& stage = scene.stage[n];
     if (!in_motion(stage.sim.solver)) return "nothing asks for motion";
     if (scene.body.size() > 1) return "there are several bodies";
@@ -181,6 +185,11 @@ void add_stages(Lines& lines, const SceneSpec& scene, const RunCost& cost) {
         const std::string why = why_solver(scene, n);
         lines.add("solver",
                   whose + name_of(scene.stage[n].sim.solver) + (why.empty() ? "" : ", as " + why));
+        if (scene.stage[n].sim.self_contact && !says(scene, n, "self_contact")) {
+            lines.add(
+                "pieces",
+                whose + "meet each other, as a blade cuts; self_contact = false: they do not");
+        }
     }
     for (const MachinePlace& place : cost.place) {
         const bool is_later = &place != &cost.place.front();
@@ -248,6 +257,7 @@ Json stages_json(const SceneSpec& scene, const RunCost& cost) {
         if (const std::string why = why_solver(scene, n); !why.empty()) {
             json["solver_chosen_as"] = why;
         }
+        json["self_contact"] = stage.sim.self_contact;
         if (!in_motion(stage.sim.solver)) continue;
         json["film"] = {{"frames", stage.frames},
                         {"frame_rate", scene.render.frame_rate.value()},

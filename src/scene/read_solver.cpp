@@ -111,7 +111,15 @@ void judge(TableReader& table, const SceneSpec& scene, const MachineSpec* machin
     }
 }
 
-void read_settings(TableReader& table, SimSettings& sim) {
+// Whether a blade parts what moves here, or has parted it before.
+bool is_cut(const SceneSpec& scene, const MachineSpec* machine) {
+    return (machine != nullptr && !machine->blade.empty()) ||
+           std::any_of(scene.stage.begin(), scene.stage.end(),
+                       [](const StageSpec& stage) { return !stage.machine.blade.empty(); });
+}
+
+void read_settings(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
+                   SimSettings& sim) {
     const auto number = [&](const std::string& key, double low, double high, double& into) {
         table.quantity(key, Quantity::number, between(low, high), into);
     };
@@ -123,6 +131,7 @@ void read_settings(TableReader& table, SimSettings& sim) {
     table.quantity("step_safety", Quantity::number, {.low = 0, .high = 1, .low_open = true},
                    sim.step_safety);
     table.whole("retry_limit", 0, 20, sim.retry_limit);
+    sim.self_contact = follows_all_motion(sim.solver) && is_cut(scene, machine);
     table.truth("self_contact", sim.self_contact);
     table.truth("sleep", sim.sleep);
     table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density);
@@ -186,7 +195,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
                  WorldAxis up, bool remolds, SimSettings& sim) {
     sim.solver = chosen_solver(table, scene, machine, sim.solver);
     judge(table, scene, machine, remolds, sim.solver);
-    read_settings(table, sim);
+    read_settings(table, scene, machine, sim);
     read_gravity(table, up, sim.gravity);
     warn_if_nothing_happens(table, scene, machine, sim.gravity);
 }

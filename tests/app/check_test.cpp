@@ -292,8 +292,18 @@ TEST_CASE("check tells each stage's solver and why, what its loads push, and how
     const std::string bend = "[[stage]]\nmachine = \"bend\"\n";
     const std::string other = "[[body]]\nfile = \"bar.obj\"\nat = [0, 1, 0]\n";
     CHECK(has(check(other + bend), "  solver       explicit, as there are several bodies\n"));
-    CHECK(has(check("[[stage]]\nmachine = \"floor\"\ngravity = 9.81\n"),
-              "  solver       explicit, as machine floor is for motion\n"));
+    const std::string fall = "[[stage]]\nmachine = \"floor\"\ngravity = 9.81\n";
+    CHECK(has(check(fall), "  solver       explicit, as machine floor is for motion\n"));
+    const std::string meet =
+        "  pieces       2-floor: meet each other, as a blade cuts; self_contact = false: they do "
+        "not\n";
+    const std::string cut = "[[stage]]\nmachine = \"cut\"\n";
+    CHECK(has(check(cut + fall), meet));
+    CHECK(parse_json(check(cut + fall, true)).at("stages").at(1).at("self_contact") == true);
+    for (const std::string& others :
+         {cut + fall + "self_contact = false\n", cut + cut, bend + fall, fall + cut}) {
+        CHECK(!has(check(others), "  pieces "));
+    }
     CHECK(has(check(bend + "solver = \"explicit\"\nduration = \"1 s\"\n" + bend),
               "  solver       1-bend: explicit\n  solver       2-bend: quasistatic, as "));
     const Json film = parse_json(check(bend + "solver = \"explicit\"\nduration = \"1 s\"\n", true))
