@@ -115,7 +115,7 @@ class InsetParts {
             }
             for (CellFill& share : layer.share) {
                 const CellId cell = matter_.lattice.cell_at(share.i, share.j, k);
-                if (cell < 0 || !ends.contains(cell) || !surface_.contains(cell)) continue;
+                if (cell < 0 || !ends.contains(cell)) continue;
                 const double whole = matter_.cell_fill[cell];
                 if (whole < 1 - kPure) crossed.push_back({&share, k, whole});
             }
