@@ -296,3 +296,74 @@ TEST_CASE("of a torn cell each side's flow goes with that side") {
         CHECK(anew.cell_history.hardening()[c] == Approx(torn ? 0.6f : 0).epsilon(1e-5));
     }
 }
+
+TEST_CASE("flow that is nowhere near what is molded anew is all over it, as much as there was") {
+    const Material metal{.yield_stress = 1e3};
+    Aggregate old = make_block(6, 2, 2, 0.1, metal);
+    old.cell_history.assign(old.cell_fill.size());
+    for (std::size_t c = 5; c < old.cell_fill.size(); c += 6) old.cell_history.hardening()[c] = 1;
+    deform(old, [](const Vec3& x) { return Vec3(x + Vec3(0.5, 0, 0)); });
+    Aggregate anew = make_block(6, 2, 2, 0.1, metal);
+    carry_hardening(old, anew);
+    for (float one : anew.cell_history.hardening()) CHECK(one == Approx(1.0 / 6).epsilon(1e-6));
+}
+
+namespace {
+
+const Material kShifting{.mechanics = Mechanics::cells,
+                         .young_modulus = 1e6,
+                         .yield_stress = 1e3,
+                         .back_stress = 600,
+                         .back_strain = 0.01};
+
+// Two cells with three between them, of which the second has twice the flow and back stress.
+Aggregate two_apart() {
+    Aggregate old =
+        make_matter(Vec3::Zero(), 0.1, {5, 1, 1}, {{0, 0, 0}, {4, 0, 0}}, {1, 1}, kShifting);
+    old.cell_history.assign(2);
+    old.cell_back.assign(2);
+    for (std::size_t c : {0, 1}) {
+        const auto times = static_cast<float>(c + 1);
+        old.cell_history.hardening()[c] = 0.01f * times;
+        old.cell_back.row[0][c] = 1e-4f * times;
+        old.cell_back.row[1][c] = -1e-4f * times;
+    }
+    return old;
+}
+
+}  // namespace
+
+TEST_CASE("where nothing was, what is molded anew is as the cell nearest to what it holds there") {
+    const Aggregate old = two_apart();
+    for (const bool is_low : {true, false}) {
+        // Right between them, and a quarter full on one side.
+        Aggregate anew = make_matter(Vec3::Zero(), 0.1, {5, 1, 1},
+                                     {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}}, {1, 0.25f, 1}, kShifting);
+        anew.cell_centroid.set(1, Eigen::Vector3f(is_low ? -0.375f : 0.375f, 0, 0));
+        carry_hardening(old, anew);
+        const std::vector<float>& hardening = anew.cell_history.hardening();
+        REQUIRE(hardening.size() == 3);
+        CHECK(hardening[1] == hardening[is_low ? 0 : 2]);
+        CHECK(hardening[2] == Approx(2 * hardening[0]).epsilon(1e-6));
+        REQUIRE(anew.cell_back.row[0].size() == 3);
+        for (int n : {0, 1}) {
+            CHECK(anew.cell_back.row[n][1] ==
+                  Approx((n == 0 ? 1e-4 : -1e-4) * (is_low ? 1 : 2)).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("back stress goes to no material that has none, nor to a body of several") {
+    const Aggregate old = two_apart();
+    Material plain = kShifting;
+    plain.back_stress = 0;
+    Aggregate anew = make_matter(Vec3::Zero(), 0.1, {5, 1, 1}, {{0, 0, 0}}, {1}, plain);
+    carry_hardening(old, anew);
+    CHECK(anew.cell_back.empty());
+    CHECK(anew.cell_history.hardening()[0] > 0);
+    anew = make_matter(Vec3::Zero(), 0.1, {5, 1, 1}, {{0, 0, 0}, {1, 0, 0}}, {1, 1}, kShifting);
+    anew.inset = {kShifting};
+    anew.cell_material = {0, 1};
+    carry_hardening(old, anew);
+    CHECK(anew.cell_back.empty());
+}

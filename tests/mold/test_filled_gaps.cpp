@@ -4,6 +4,7 @@
 
 #include "base/units.h"
 #include "geometry/box_mesh.h"
+#include "mold/filled_gaps.h"
 #include "mold/mold.h"
 #include "mold/prepare.h"
 #include "tests/catch.h"
@@ -154,6 +155,20 @@ TEST_CASE("the spacing that is said to keep a gap open does") {
         CHECK(told_of(fork_mesh(gap), spacing) == "");
     }
     CHECK(told > 20);
+}
+
+TEST_CASE("a gap askew to the cells wants finer ones, by how far they reach across it") {
+    for (const Vec3& across : {Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(1, 2, 0), Vec3(1, -1, 1)}) {
+        INFO("across " << across.transpose());
+        const Pose pose{Quat(Quat::FromTwoVectors(Vec3(0, 1, 0), across)), Vec3::Zero()};
+        const TriMesh mesh = moved(fork_mesh(1.2), pose);
+        const MoldFrame frame = frame_over(box_of(mesh.position), 1);
+        const std::vector<FilledGap> gaps = filled_gaps(mesh, share_cells(mesh, frame), frame);
+        REQUIRE(gaps.size() == 1);
+        CHECK(gaps[0].width == Approx(1.2).epsilon(0.02));
+        const double reach = across.normalized().lpNorm<1>();
+        CHECK(gaps[0].spacing == Approx(1.2 / (2 * reach)).epsilon(0.02));
+    }
 }
 
 TEST_CASE("without its lattice a mold tells the same of gaps") {

@@ -197,6 +197,28 @@ TEST_CASE("where surfaces cannot be cut along each other, places tell what lies 
     CHECK(sum * frame.cell_volume() == Approx(lower).epsilon(0.02));
 }
 
+TEST_CASE("by places, of a cell there is no more in both than the body has, about where it lies") {
+    // One cell of 1; the body and the insets fill it up to some height each.
+    const MoldFrame frame = frame_over({{0, 0, 0}, {1, 1, 1}}, 1);
+    const TriMesh body = box_mesh({0, 0, 0}, {1, 0.69, 1});
+    const TriangleTree tree(body);
+    const auto within = [&](const TriMesh& solid) {
+        const auto layers = share_cells(solid, frame);
+        return Overhang(tree, solid, frame).within(layers[0].share[0], 0, 0.69);
+    };
+    CHECK(within(box_mesh({0, 0, 0}, {1, 1, 1})).fill == Approx(0.69));
+    // Their places tell of 0.75 of the body.
+    CHECK(within(box_mesh({0, 0, 0}, {0.93, 1, 1})).fill == Approx(0.69));
+    const CellFill half = within(box_mesh({0, 0, 0}, {0.5, 1, 1}));
+    CHECK(half.fill == Approx(0.5 * 0.69).epsilon(0.1));
+    CHECK((half.moment / half.fill - Vec3(-0.25, -0.155, 0)).norm() < 0.04);
+    // All of a thin one that lies within, about its own middle.
+    const CellFill thin = within(box_mesh({0, 0.1, 0}, {1, 0.11, 1}));
+    CHECK(thin.fill == Approx(0.01));
+    CHECK(thin.moment.y() / thin.fill == Approx(0.105 - 0.5));
+    CHECK(within(box_mesh({0, 0.8, 0}, {1, 1, 1})).fill == 0);
+}
+
 TEST_CASE("insets laid over each other are those that lie side by side") {
     const TriMesh bar = box_mesh({0, 0, 0}, {10, 2, 2});
     const auto slab = [](double from, double to) {
@@ -264,6 +286,27 @@ TEST_CASE("of insets that overlap within cells each has its volume") {
           {44, 32.8, 40, 43.2});
 }
 
+TEST_CASE("what two later insets take from one is taken once, and the rest lies where it lay") {
+    // Cells of 1. The second takes a corner of the first along x and y, the third all of its end.
+    const TriMesh bar = box_mesh({0, 0, 0}, {10, 4, 4});
+    const Aggregate matter =
+        with_insets(bar,
+                    {box_mesh({-1, 0.3, -1}, {8, 5, 5}), box_mesh({3.5, 1.5, -1}, {12, 5, 5}),
+                     box_mesh({-1, -1, -1}, {2.5, 5, 5})},
+                    4);
+    int seen = 0;
+    for (const MixedCell& cell : matter.mixed_cell) {
+        const Vec3i site = matter.lattice.cell_site(cell.cell);
+        if (site.x() != 2 || site.y() != 0) continue;
+        ++seen;  // of which 0.5, 0.35 and 0.15 are of the third, the first and the body
+        CHECK((cell.material[0] == 3 && cell.material[1] == 1));
+        CHECK(cell.fill[0] / cell.fill[1] == Approx(0.5 / 0.35).epsilon(1e-5));
+        CHECK((cell.centroid[0] - Eigen::Vector3f(-0.25f, 0, 0)).norm() < 1e-5f);
+        CHECK((cell.centroid[1] - Eigen::Vector3f(0.25f, 0.15f, 0)).norm() < 1e-5f);
+    }
+    CHECK(seen == 4);
+}
+
 TEST_CASE("a boundary between materials looks along its own normal, also at the body's surface") {
     const TriMesh bar = box_mesh({0, 0, 0}, {10, 4, 4});
     for (const int across : {2, 4}) {
@@ -273,6 +316,56 @@ TEST_CASE("a boundary between materials looks along its own normal, also at the 
             CHECK(std::abs(cell.normal.x()) > 1 - 1e-6f);
         }
     }
+}
+
+TEST_CASE("where the body overlaps itself an inset has no more than its own volume") {
+    // Cells of 1 that are filled by three quarters.
+    const TriMesh body =
+        together(box_mesh({0, 0, 0}, {6.2, 1.5, 2}), box_mesh({6, 0, 0}, {10, 1.5, 2}));
+    MoldSettings settings;
+    settings.spacing = 1;
+    const Aggregate matter =
+        mold(body, {}, settings, {{box_mesh({2, 0, 0}, {6.5, 1.5, 2}), Material{}}});
+    CHECK(material_volumes(matter)[1] == Approx(4.5 * 1.5 * 2).epsilon(1e-6));
+}
+
+TEST_CASE("an inset has its part of slivers that cells have taken") {
+    // Filled by three quarters, with a film on top that is less than a thousandth of its cells.
+    const TriMesh body =
+        together(together(box_mesh({0, 0, 0}, {10, 1.5, 2}), box_mesh({8, 0, 2}, {10, 1.5, 3})),
+                 box_mesh({2, 0, 2}, {6, 1.5, 2.0009}));
+    MoldSettings settings;
+    settings.spacing = 1;
+    const Aggregate matter =
+        mold(body, {}, settings, {{box_mesh({1, -1, -1}, {4.5, 3, 4}), Material{}}});
+    CHECK(material_volumes(matter)[1] == Approx(3.5 * 3 + 2.5 * 1.5 * 0.0009).epsilon(1e-6));
+}
+
+TEST_CASE("how much of an inset lies outside is told by its volume, not by whole cells") {
+    // Cells of 1 that are filled by three quarters; 9 of 48 lie within.
+    std::vector<std::string> told;
+    MoldSettings settings;
+    settings.spacing = 1;
+    mold(box_mesh({0, 0, 0}, {10, 1.5, 2}), {}, settings,
+         {{box_mesh({2, -1, -1}, {5, 3, 3}), Material{}}}, &told);
+    REQUIRE(told.size() == 1);
+    CHECK(std::stod(told[0]) == Approx(81.25).epsilon(2e-3));
+}
+
+TEST_CASE("the boundary of two insets is the later one's, whatever else the older one ends at") {
+    // Cells of 1: in those across, the first ends at y = 2.9 and the second at x = 4.6.
+    const TriMesh bar = box_mesh({0, 0, 0}, {10, 4, 4});
+    const Aggregate matter = with_insets(
+        bar, {box_mesh({1, 1, -1}, {8, 2.9, 5}), box_mesh({2, -1, -1}, {4.6, 5, 5})}, 4);
+    int seen = 0;
+    for (const MixedCell& cell : matter.mixed_cell) {
+        const Vec3i site = matter.lattice.cell_site(cell.cell);
+        if (site.x() != 4 || site.y() != 2 || site.z() == 0 || site.z() == 3) continue;
+        ++seen;
+        CHECK((cell.material[0] == 2 && cell.material[1] == 1));
+        CHECK(std::abs(cell.normal.x()) > 1 - 1e-6f);
+    }
+    CHECK(seen == 2);
 }
 
 TEST_CASE("the two materials of a cell fill it as far as the body does") {

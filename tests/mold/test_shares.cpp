@@ -159,6 +159,67 @@ TEST_CASE("slivers go to a neighbour and take nothing with them") {
     for (float fill : needle.cell_fill) CHECK(fill > 0.9 * kLeastFill);
 }
 
+namespace {
+
+// Layers of cells in one row along x, with what fills them about their middles.
+std::vector<CellLayer> row_of(const std::vector<double>& fill) {
+    std::vector<CellLayer> layers(1);
+    for (int i = 0; i < static_cast<int>(fill.size()); ++i) {
+        layers[0].share.push_back({i, 0, fill[i], Vec3::Zero()});
+    }
+    return layers;
+}
+
+std::vector<double> fills_of(const std::vector<CellLayer>& layers) {
+    std::vector<double> fill;
+    for (const CellLayer& layer : layers) {
+        for (const CellFill& s : layer.share) fill.push_back(s.fill);
+    }
+    return fill;
+}
+
+}  // namespace
+
+TEST_CASE("no sliver is left, and what no neighbour takes is told as lost") {
+    // The first goes to the second, which is a sliver still and has none to go to.
+    std::vector<CellLayer> layers = row_of({1e-4, 3e-4});
+    CHECK(drop_slivers(layers) == Approx(4e-4));
+    CHECK(fills_of(layers).empty());
+    // Both are a cell.
+    layers = row_of({6e-4, 7e-4});
+    CHECK(drop_slivers(layers) == 0);
+    REQUIRE(fills_of(layers).size() == 1);
+    CHECK(fills_of(layers)[0] == Approx(1.3e-3));
+    CHECK(layers[0].share[0].i == 1);
+    CHECK(layers[0].share[0].moment.x() == Approx(-6e-4));
+}
+
+TEST_CASE("what is filled less than nothing is taken from a neighbour that has twice as much") {
+    const auto left = [](const std::vector<double>& fill) {
+        std::vector<CellLayer> layers = row_of(fill);
+        CHECK(drop_slivers(layers) == 0);
+        return std::pair(fills_of(layers), layers[0].deficit);
+    };
+    CHECK(left({0.05, -0.02}) == std::pair(std::vector{0.05 - 0.02}, 0.0));
+    CHECK(left({0.03, -0.02}) == std::pair(std::vector{0.03}, 0.02));
+    CHECK(left({-0.02}) == std::pair(std::vector<double>(), 0.02));
+}
+
+TEST_CASE("slivers of a part go where those of its body did, also where it had nothing") {
+    std::vector<CellLayer> layers(2);
+    layers[0].share = {{2, 1, 0.5, Vec3::Zero()}, {4, 3, 0.5, Vec3::Zero()}};
+    layers[1].share = {{2, 1, 2e-4, Vec3(0, 0, -1e-4)}, {5, 2, 4e-4, Vec3::Zero()}};
+    move_slivers({{{2, 1, 1}, {2, 1, 0}}, {{5, 2, 1}, {5, 2, 0}}, {{9, 9, 1}, {9, 9, 0}}}, layers);
+    const std::vector<CellFill>& low = layers[0].share;
+    REQUIRE(low.size() == 3);  // in the order of their rows
+    CHECK((low[1].i == 5 && low[1].j == 2));
+    CHECK(low[0].fill == Approx(0.5002).epsilon(1e-12));
+    CHECK(low[0].moment.z() == Approx(1e-4));  // in the upper half of the cell above
+    CHECK(low[1].fill == 4e-4);
+    CHECK(low[1].moment.z() == 4e-4);
+    CHECK(fills_of({layers[1]}) == std::vector{0.0, 0.0});
+}
+
 TEST_CASE("flat holes are closed exactly") {
     const TriMesh box = moved(box_mesh({0, 0, 0}, {4, 4, 4}), some_turn());
     for (int missing = 0; missing < 12; ++missing) {  // half a face
