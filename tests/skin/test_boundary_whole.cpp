@@ -73,6 +73,30 @@ TEST_CASE("no edge of a boundary has four faces, and none is open") {
     CHECK(test::is_closed(boundary_skin(matter).mesh));
 }
 
+TEST_CASE("where an edge of four faces is parted the picture goes on over what it is parted into") {
+    const int kind = GENERATE(9, 54);
+    const Aggregate matter = lumps(kind);
+    TriMesh mesh = boundary_skin(matter).mesh;
+    const auto texture_at = [](const Vec3& p) {
+        return Vec2(p.x() + 0.5 * p.z(), p.y() - 0.7 * p.z());
+    };
+    for (const Vec3& p : mesh.position) mesh.uv.push_back(texture_at(p));
+    mesh.triangle_uv = mesh.triangle;
+    const NewLook look(mesh);
+    const BoundarySkin skin = boundary_skin(matter, &look);
+    const int faces = skin.mesh.triangle_polygon.back() + 1;
+    REQUIRE(static_cast<int>(skin.mesh.triangle.size()) > 2 * faces);  // some are
+    double worst = 0;
+    for (std::size_t t = 0; t < skin.mesh.triangle.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const Vec3& place = skin.mount.reference[skin.mesh.triangle[t][k]];
+            const Vec2& uv = skin.mesh.uv[skin.mesh.triangle_uv[t][k]];
+            worst = std::max(worst, (uv - texture_at(place)).norm());
+        }
+    }
+    CHECK(worst < 0.05);  // a new vertex lies off its edge by 0.02
+}
+
 TEST_CASE("a boundary has no shell that holds less than a voxel") {
     const int kind = GENERATE(9, 26, 38, 54);
     const Aggregate matter = lumps(kind);

@@ -123,9 +123,27 @@ TEST_CASE("beside a cut a loose particle is drawn back by what firm matter is le
         const Vec3 p = matter.particle_reference.at(loose.particle[n]);
         const Vec3 should = side(p) ? away : Vec3(Vec3::Zero());
         CHECK((moved[n] - should).norm() < .15001 * spacing);
+        CHECK((moved[n] - should).norm() > .14999 * spacing);  // no farther than that
         beside += std::abs(normal.dot(p) - .01) < spacing;
     }
     CHECK(beside > 10);
+}
+
+TEST_CASE("beside a cut a loose particle that is near its place on its side stays as it is") {
+    Aggregate matter = ball(9);
+    const Vec3 normal = Vec3(1, .2, .1).normalized();
+    const LooseParticles loose = find_loose(matter);
+    test::sever_plane(matter, .01 * normal, normal);
+    test::deform(matter,
+                 [&](const Vec3& p) { return normal.dot(p) > .01 ? Vec3(p + Vec3(.5, 0, 0)) : p; });
+    drive_about(matter, .1);
+    const auto moved = loose_displacements(loose, matter, matter.particle_reference.all());
+    REQUIRE(moved.size() > 10);
+    for (std::size_t n = 0; n < moved.size(); ++n) {
+        const ParticleId p = loose.particle[n];
+        const Vec3 own = matter.particle_position.at(p) - matter.particle_reference.at(p);
+        CHECK((moved[n] - own).norm() == 0);
+    }
 }
 
 TEST_CASE("a fin thinner than a sliver is left to itself") {

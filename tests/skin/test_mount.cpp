@@ -120,7 +120,7 @@ TEST_CASE("severed matter is followed by each side on its own") {
     test::sever_plane(matter, {0.0312, 0, 0}, normal);
     REQUIRE(find_pieces(matter).count == 2);
     const auto places = places_in({-.5, -.2, -.2}, {.5, .2, .2}, 4000);
-    Mount mount = mount_mesh(places, matter, SkinKind::mount);
+    Mount mount = mount_mesh(places, matter, GENERATE(SkinKind::mount, SkinKind::frame4));
     const auto above = [&](const Vec3& p) { return normal.dot(p - Vec3(0.0312, 0, 0)) >= 0; };
     for (std::size_t v = 0; v < places.size(); ++v) {
         mount.side[v] = 0;
@@ -143,6 +143,33 @@ TEST_CASE("severed matter is followed by each side on its own") {
         wrong += (now[v] - map(places[v])).norm() > 1e-12;
     }
     CHECK(wrong == 0);
+}
+
+TEST_CASE("a skin is held no farther off its matter than what flowed around may have left it") {
+    const double a = 0.1;
+    Aggregate matter = test::make_block(9, 3, 3, a, Material{});
+    matter.cell_history.assign(matter.cell_fill.size());
+    const auto cell_at = [&](int i) { return std::size_t(matter.lattice.cell_at(i, 1, 1)); };
+    matter.cell_history.hardening()[cell_at(4)] = 0.01f;
+    // In the cell that flowed, in one beside it, and two cells on.
+    Mount mount = mount_mesh({{0, 0, 0}, {a, 0, 0}, {2 * a, 0, 0}}, matter, SkinKind::mount);
+    const auto held = [&](double gap) {
+        Mount own = mount;
+        std::vector<Vec3> place, is;
+        for (const Vec3& p : own.reference) place.push_back(p + Vec3(0, gap, 0));
+        hold_places(own, matter, place);
+        skin_positions(own, matter, is);
+        std::vector<double> off;
+        for (std::size_t v = 0; v < is.size(); ++v) off.push_back((is[v] - place[v]).norm() / a);
+        return off;
+    };
+    const std::vector<double> near = held(0.04 * a), far = held(2 * a);
+    for (int v : {0, 1}) {
+        CHECK(near[v] == Approx(0).margin(1e-9));
+        CHECK(far[v] == Approx(2 - 0.05).epsilon(1e-6));
+    }
+    CHECK(near[2] == Approx(0.04));
+    CHECK(far[2] == Approx(2));
 }
 
 TEST_CASE("the skin is the same to the bit at any number of threads") {

@@ -153,6 +153,75 @@ TEST_CASE("faces across a seam take nothing of the picture that belongs to no si
     CHECK(astray == 0);
 }
 
+namespace {
+
+// Of each side that lies around z the next part of one picture, which begins and ends at an edge:
+// as a label is wound round a tin.
+Vec2 label_at(int side, const Vec3& p, const Vec3& half) {
+    const double x = p.x() + half.x(), y = p.y() + half.y(), wide = 2 * half.x(),
+                 deep = 2 * half.y();
+    const double u = side == 2   ? x
+                     : side == 1 ? wide + y
+                     : side == 3 ? 2 * wide + deep - x
+                                 : 2 * wide + 2 * deep - y;
+    return Vec2(u, p.z());
+}
+
+}  // namespace
+
+TEST_CASE("where a picture that is wound round a body ends, no face has both of its ends") {
+    const Aggregate block = test::make_block(7, 4, 3, 1, Material{});
+    const Vec3 half(3.5, 2, 1.5);
+    TriMesh mesh = textured_box(block);
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const int side = mesh.triangle_material[t];
+        for (int k = 0; k < 3; ++k) {
+            if (side >= 4) mesh.triangle_uv[t][k] = -1;
+            if (side >= 4) continue;
+            const Vec2 uv = label_at(side, mesh.position[mesh.triangle[t][k]], half);
+            mesh.uv[mesh.triangle_uv[t][k]] = uv;
+        }
+    }
+    const NewLook look(mesh);
+    const TriMesh anew = test::boundary_now(block, &look);
+    double worst = 0;
+    for (std::size_t t = 0; t < anew.triangle.size(); ++t) {
+        const int side = side_of(anew, anew.triangle[t]);
+        REQUIRE((anew.triangle_uv[t][0] < 0) == (side >= 4));
+        for (int k = 0; k < 3 && side < 4; ++k) {
+            const Vec3& place = anew.position[anew.triangle[t][k]];
+            const Vec2 uv = anew.uv[anew.triangle_uv[t][k]];
+            worst = std::max(worst, (uv - label_at(side, place, half)).norm());
+        }
+    }
+    CHECK(worst < 1e-9);
+}
+
+TEST_CASE("where sides have the same picture, no face has a corner of the one beside it") {
+    const Aggregate cube = test::make_block(4, 4, 4, 1, Material{});
+    TriMesh mesh = textured_box(cube);
+    const auto place_on = [](int side, const Vec3& p) {
+        return Vec2(p[(side / 2 + 1) % 3], p[(side / 2 + 2) % 3]);
+    };
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            mesh.uv[mesh.triangle_uv[t][k]] =
+                place_on(mesh.triangle_material[t], mesh.position[mesh.triangle[t][k]]);
+        }
+    }
+    const NewLook look(mesh);
+    const TriMesh anew = test::boundary_now(cube, &look);
+    double worst = 0;
+    for (std::size_t t = 0; t < anew.triangle.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const Vec2 uv =
+                place_on(side_of(anew, anew.triangle[t]), anew.position[anew.triangle[t][k]]);
+            worst = std::max(worst, (anew.uv[anew.triangle_uv[t][k]] - uv).norm());
+        }
+    }
+    CHECK(worst < 1e-9);
+}
+
 TEST_CASE("a texture stays where it was on matter that has moved") {
     Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
     const NewLook look(textured_box(block));

@@ -214,6 +214,27 @@ TEST_CASE("strength is used by the largest strain, of springs by their own Poiss
     }
 }
 
+TEST_CASE("of each material as much strength is used as that has, by its own Poisson's ratio") {
+    Material stiff, weak;
+    stiff.poisson_ratio = 0.2, weak.poisson_ratio = 0.45;
+    Aggregate matter = make_block(8, 4, 4, 0.01, stiff);
+    matter.inset = {weak};
+    matter.cell_material.assign(matter.cell_fill.size(), 0);
+    for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+        matter.cell_material[c] = matter.lattice.cell_site(static_cast<CellId>(c)).x() >= 4;
+    }
+    const Mount mount = mount_mesh({{-0.03, 0.02, 0}, {0.03, 0.02, 0}}, matter, SkinKind::mount);
+    std::vector<StressSample> samples =
+        pulled(matter, cells_under(mount, matter), [](const Vec3&) { return 1.0; });
+    for (StressSample& one : samples) {
+        one.stress[2] = 1;
+        one.breaks_at = one.material == 0 ? 4 : 2;
+    }
+    const SkinFieldValues is = skin_fields(mount, matter, samples, {SkinField::strength_use});
+    CHECK(is[0][0] == Approx((1 - 0.2) / 4).epsilon(1e-5));
+    CHECK(is[0][1] == Approx((1 - 0.45) / 2).epsilon(1e-5));
+}
+
 TEST_CASE("where a connection has broken all of the strength is told to be used") {
     Aggregate matter = make_block(4, 4, 4, 0.01, Material{});
     const auto used = [&] {
