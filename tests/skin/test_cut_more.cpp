@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cuts that stop inside a body, and cuts through what others have left.
+#include <algorithm>
 #include <random>
 
 #include "geometry/triangle_tree.h"
@@ -88,6 +89,27 @@ TEST_CASE("a blade that stops inside the body leaves the surface in one piece") 
         high = std::max(high, f.position[v].x());
     }
     CHECK(high - low == Approx(2 * .2 * (.15 - .0161)).epsilon(.05));
+}
+
+TEST_CASE("faces of a cut are of the part that they cut through, and shade apart where they meet") {
+    Fixture f(bar());
+    f.mesh.part_name = {"another", "bar"};
+    for (int& part : f.mesh.triangle_part) part = 1;
+    const Vec3 a(0.0137, .0161, -1), b(0.0137, .0161, 1), c(0.0137, 1, 1), d(0.0137, 1, -1);
+    f.cut({{a, b, c}, {a, c, d}});
+    std::set<int> vertex[2], group[2];  // of the faces on either side
+    for (std::size_t t = 0; t < f.mesh.triangle.size(); ++t) {
+        CHECK(f.mesh.triangle_part[t] == 1);
+        if (!is_cut_look(f.mesh.material[f.mesh.triangle_material[t]])) continue;
+        const int side = area_vector(f.mesh.position, f.mesh.triangle[t]).x() > 0;
+        for (int v : f.mesh.triangle[t]) vertex[side].insert(v);
+        for (int g : f.mesh.triangle_smooth[t]) group[side].insert(g);
+    }
+    const auto common = [](const std::set<int>* of) {
+        return std::ranges::count_if(of[0], [&](int one) { return of[1].contains(one); });
+    };
+    CHECK(common(vertex) > 0);  // where the blade stops
+    CHECK(common(group) == 0);
 }
 
 TEST_CASE("wherever a blade stops, no triangle or edge is its own other side") {

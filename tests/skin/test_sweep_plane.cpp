@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/sweep_plane.h"
+
+#include "tests/catch.h"
+
+using namespace swage;
+
+TEST_CASE("what a blade sweeps forth and back lies in one plane, with one outline") {
+    // Two squares beside each other, at z = 0.5; the second is swept backwards.
+    const auto at = [](double x, double y) { return Vec3(x, y, 0.5); };
+    const std::vector<std::array<Vec3, 3>> sweep = {{at(0, 0), at(1, 0), at(1, 1)},
+                                                    {at(0, 0), at(1, 1), at(0, 1)},
+                                                    {at(1, 0), at(2, 1), at(2, 0)},
+                                                    {at(1, 0), at(1, 1), at(2, 1)}};
+    const auto plane = fit_sweep_plane(sweep, 1e-9);
+    REQUIRE(plane);
+    CHECK(std::abs(plane->normal.z()) == Approx(1));
+    CHECK((plane->point - Vec3(1, 0.5, 0.5)).norm() < 1e-12);
+    CHECK(plane->outline.size() == 6);
+    double length = 0;
+    for (const auto& [from, to] : plane->outline) length += (to - from).norm();
+    CHECK(length == Approx(6));
+    // Near the area is what is no farther from it than that, beside its edges too.
+    const auto is_near = [&](double x, double y, double reach) {
+        return plane->near(plane->flat(at(x, y)), reach);
+    };
+    for (double x : {0.3, 0.7, 1.3, 1.7}) CHECK(is_near(x, 0.4, 0));
+    CHECK(is_near(0.5, -0.09, 0.1));
+    CHECK(!is_near(0.5, -0.11, 0.1));
+    CHECK(!is_near(0.5, -0.09, 0));
+    CHECK(is_near(-0.07, -0.07, 0.1));
+    CHECK(!is_near(-0.08, -0.08, 0.1));
+}
