@@ -49,7 +49,7 @@ SWAGE_INLINE BackGrown<N> flowed_on(const CellHistory<N>& history, const BackStr
         {plus_unit(next, -1.0),
          {all.xy - elastic(q.xy, beta.xy), all.yz - elastic(q.yz, beta.yz),
           all.zx - elastic(q.zx, beta.zx), all.xyz - elastic(q.xyz, beta.xyz)},
-         history.alpha + r.d_alpha},
+         history.alpha + r.whole_d_alpha()},
         {{dot(turn.x, x), dot(turn.y, y), dot(turn.z, z), dot(turn.x, y), dot(turn.y, z),
           dot(turn.z, x)},
          {held(q.xy, beta.xy), held(q.yz, beta.yz), held(q.zx, beta.zx), held(q.xyz, beta.xyz)}}};

@@ -189,6 +189,8 @@ struct BackFlowed : BackReturn<N> {
     Symmetric<N> distortion;
     CellModes<N> modes, mode_stress, back_stress;  // the last: of beta
     N mode_flow, kept_modes;                       // as CellFlowed
+    ModesReturn<N> alone;
+    SWAGE_INLINE N whole_d_alpha() const { return this->d_alpha + alone.d_alpha; }
 };
 template <typename N>
 SWAGE_INLINE BackFlowed<N> flow_with_back(const CellModuli& law, const CellHistory<N>& history,
@@ -208,7 +210,10 @@ SWAGE_INLINE BackFlowed<N> flow_with_back(const CellModuli& law, const CellHisto
         contract(r.distortion, back.strain) + share * product(r.back_stress, r.modes),
         contract(back.strain, back.strain) + share * product(r.back_stress, back.modes),
         history.alpha);
-    r.kept_modes = 1.0 - r.mode_flow * (1.0 - r.kept);
+    const N energy = product(r.mode_stress, r.modes);
+    r.alone =
+        return_modes<N>(law, r, ((1.0 - r.mode_flow) * mode_share(fill)) * energy, history.alpha);
+    r.kept_modes = kept_of_modes<N>(r.mode_flow, r, r.alone);
     return r;
 }
 
@@ -224,7 +229,8 @@ inline double saved_by_flow(const CellModuli& law, double alpha, const BackStrai
            energy(r.kept * r.distortion + r.lent * back.strain,
                   r.kept_modes * r.modes + r.lent * back.modes,
                   r.kept_modes * r.mode_stress + r.lent * r.back_stress) -
-           r.d_alpha * (mean_flow_stress(law, alpha, r.d_alpha) + r.more);
+           r.d_alpha * (mean_flow_stress(law, alpha, r.d_alpha) + r.more) -
+           r.alone.d_alpha * (r.line.stress + r.line.slope * alpha);
 }
 
 // 2 dw/dC of dw/dE = t, of any axes: (I - Y) (t + (t Y^2 + Y t Y + Y^2 t) / 3 + ...) (I - Y).

@@ -170,9 +170,11 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
             const CellModes<N> of_beta = mode_stress(k.folded, a, beta);
             const Symmetric<N> distortion = deviator(e.log);
             N part = (-0.5 / (k.law.shear * k.law.spacing * k.law.spacing * k.law.spacing)) + N{};
-            N flow = 1.0 + N{};  // of the modes
+            N kept_modes{};
+            N flow = 1.0 + N{}, mode_energy{};
             if constexpr (kPart) {
                 flow = mode_flow(share.fill);
+                mode_energy = (flow - 1.0) * mode_share(share.fill) * product(g, modes);
                 part = part * flow * mode_share(share.fill);
             }
             const BackReturn<N> r = return_with_back(
@@ -181,22 +183,34 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
                 contract(back->strain, back->strain) + part * product(of_beta, beta),
                 history.alpha);
             if (over != nullptr) *over = r.over;
+            kept_modes = 1.0 - flow * (1.0 - r.kept);
+            if constexpr (kPart) {
+                const ModesReturn<N> alone = return_modes<N>(k.law, r, mode_energy, history.alpha);
+                if (over != nullptr) *over = larger(r.over, alone.over);
+                kept_modes = kept_of_modes<N>(flow, r, alone);
+            }
             lent = (shear * r.lent) * back->strain;
             shear = shear * r.kept;
-            g = (1.0 - flow * (1.0 - r.kept)) * g + r.lent * of_beta;
+            g = kept_modes * g + r.lent * of_beta;
         } else if constexpr (can_flow(kKind)) {
             const Symmetric<N> distortion = deviator(e.log);
-            N mode_energy = -1.0 * product(g, modes);
-            N flow = 1.0 + N{};  // of the modes
+            const N alpha = kFlowed ? history.alpha : N{}, mode_energy = -1.0 * product(g, modes);
             if constexpr (kPart) {
-                flow = mode_flow(share.fill);
-                mode_energy = flow * mode_share(share.fill) * mode_energy;
+                const N flow = mode_flow(share.fill), of_it = mode_share(share.fill);
+                const CellReturn<N> back = return_cell(k.law, contract(distortion, distortion),
+                                                       flow * of_it * mode_energy, alpha);
+                const ModesReturn<N> alone =
+                    return_modes(k.law, back, (1.0 - flow) * of_it * mode_energy, alpha);
+                if (over != nullptr) *over = larger(back.over, alone.over);
+                shear = shear * back.kept;
+                g = kept_of_modes(flow, back, alone) * g;
+            } else {
+                const CellReturn<N> back =
+                    return_cell(k.law, contract(distortion, distortion), mode_energy, alpha);
+                if (over != nullptr) *over = back.over;
+                shear = shear * back.kept;
+                g = back.kept * g;
             }
-            const CellReturn<N> back = return_cell(k.law, contract(distortion, distortion),
-                                                   mode_energy, kFlowed ? history.alpha : N{});
-            if (over != nullptr) *over = back.over;
-            shear = shear * back.kept;
-            g = (kPart ? 1.0 - flow * (1.0 - back.kept) : back.kept) * g;
         }
         if constexpr (kPart) g = mode_fill(share.fill) * g;
         stress =

@@ -83,7 +83,7 @@ SWAGE_INLINE CellHistory<N> flowed_on(const CellHistory<N>& history, const CellF
     return {plus_unit(next, -1.0),
             {all.xy - elastic(r.modes.xy), all.yz - elastic(r.modes.yz),
              all.zx - elastic(r.modes.zx), all.xyz - elastic(r.modes.xyz)},
-            history.alpha + r.d_alpha};
+            history.alpha + r.whole_d_alpha()};
 }
 
 }  // namespace swage

@@ -41,6 +41,23 @@ SWAGE_INLINE CellReturn<N> return_cell(const CellModuli& law, const N& distortio
     return return_to(law, FlowLine<double>{law.yield_stress, law.hardening}, stress, alpha);
 }
 
+// Modes that flow by themselves, beside a mean that ends on this line.
+template <typename N>
+struct ModesReturn {
+    N over;  // as above
+    N d_alpha;
+    N kept;
+};
+template <typename N>
+SWAGE_INLINE ModesReturn<N> return_modes(const CellModuli& law, const CellReturn<N>& mean,
+                                         const N& mode_energy, const N& alpha) {
+    const double volume = law.spacing * law.spacing * law.spacing;
+    const N stress = root((3 * law.shear / volume) * mode_energy) + 1e-300;
+    const N over = stress - mean.line.stress - mean.line.slope * alpha;
+    const N flows = larger(over, 0.0 * over);
+    return {over, (1.0 / (3 * law.shear)) * flows, 1.0 - flows / stress};
+}
+
 // What flow takes per d_alpha [Pa].
 inline double mean_flow_stress(const CellModuli& law, double alpha, double d_alpha) {
     return law.curve.empty() ? law.yield_stress + law.hardening * (alpha + 0.5 * d_alpha)
@@ -54,6 +71,9 @@ inline double saved_by_flow(const CellModuli& law, double alpha, const CellRetur
     const double less =
         stress + slope * (alpha + 0.5 * r.d_alpha) - mean_flow_stress(law, alpha, r.d_alpha);
     return over * over / (2 * (3 * law.shear + slope)) + r.d_alpha * less;
+}
+inline double saved_by_flow(const CellModuli& law, const ModesReturn<double>& r) {
+    return r.over > 0 ? r.over * r.over / (6 * law.shear) : 0;
 }
 
 }  // namespace swage

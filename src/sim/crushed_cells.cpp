@@ -88,6 +88,7 @@ struct Crushed {
             static_cast<CellReturn<double>&>(flowed) = r;
             flowed.distortion = r.distortion, flowed.modes = r.modes;
             flowed.mode_stress = r.mode_stress, flowed.kept_modes = r.kept_modes;
+            flowed.alone = r.alone;
         }
     }
 
@@ -95,7 +96,8 @@ struct Crushed {
     double stored() const { return strain_energy(*law, strain); }
     double spent() const {
         return stored() - (shifts ? saved_by_flow(*law, history.alpha, back, fill, flowed)
-                                  : saved_by_flow(*law, history.alpha, flowed));
+                                  : saved_by_flow(*law, history.alpha, flowed) +
+                                        saved_by_flow(*law, flowed.alone));
     }
 
     double energy() const {

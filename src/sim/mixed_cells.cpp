@@ -40,8 +40,9 @@ SWAGE_INLINE void batch_forces(const MixedBatch& batch, std::array<double, 24>* 
             own = {false, {jump.x[l], jump.y[l], jump.z[l]}};
             for (int p = 0; p < 2; ++p) {
                 const double near = -kNearYield * cells.phase[p].law->yield_stress;
+                const auto& flowed = found.phase[p].flowed;
                 own.may_flow = own.may_flow || (cells.phase[p].kind == CellKind::yielding &&
-                                                found.phase[p].flowed.over[l] > near);
+                                                larger(flowed.over, flowed.alone.over)[l] > near);
             }
         }
     }
@@ -203,10 +204,10 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
         if (growths) was = rest_lengths(matter, cell.cell, &cell);
         for (int p = 0; p < 2; ++p) {
             const CellFlowed<double>& r = one.found.phase[p].flowed;
-            if (one.phase[p].kind != CellKind::yielding || !(r.d_alpha > 0)) continue;
+            if (one.phase[p].kind != CellKind::yielding || !(r.whole_d_alpha() > 0)) continue;
             const CellModuli& law = *one.phase[p].law;
-            lost += volume * one.phase[p].fill * r.d_alpha *
-                    mean_flow_stress(law, one.phase[p].history.alpha, r.d_alpha);
+            lost += volume * one.phase[p].fill * r.whole_d_alpha() *
+                    mean_flow_stress(law, one.phase[p].history.alpha, r.whole_d_alpha());
             const CellHistory<double> after =
                 flowed_on(one.phase[p].history, r, one.found.phase[p].gradient, one.sums);
             for_each_number(after, [&](int s, const double& now) {

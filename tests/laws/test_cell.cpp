@@ -60,12 +60,13 @@ double energy(const CellModuli& law, const Cell& cell, const Corners& x) {
     }
     const CellFlowed<double> r = flow_of(law, cell, s);
     const double size = cell_size(s.strain).log;
-    const double w = r.kept * r.kept;
+    const double w = r.kept * r.kept, of_modes = r.kept_modes * r.kept_modes;
     const double stored =
         kVolume * cell.fill *
             (law.shear * w * contract(r.distortion, r.distortion) + 0.5 * law.bulk * size * size) +
-        0.5 * fill3 * w * product(r.mode_stress, r.modes);
-    const double flowed = r.d_alpha * mean_flow_stress(law, cell.history.alpha, r.d_alpha);
+        0.5 * fill3 * of_modes * product(r.mode_stress, r.modes);
+    const double flowed = r.d_alpha * mean_flow_stress(law, cell.history.alpha, r.d_alpha) +
+                          r.alone.d_alpha * (r.line.stress + r.line.slope * cell.history.alpha);
     return stored + kVolume * cell.fill * flowed;
 }
 
@@ -83,7 +84,7 @@ Corners force(const CellModuli& law, const Cell& cell, const Corners& x) {
     const Symmetric<double> a = taken_back(cell.history);
     return forces_of(sum_forces(s.sums, s.elastic, a,
                                 s.elastic * (scale * cell_stress(law, s.strain, r.kept)) * a,
-                                (fill3 * r.kept) * r.mode_stress, cell.at, law.spacing));
+                                (fill3 * r.kept_modes) * r.mode_stress, cell.at, law.spacing));
 }
 
 // Drawn to exp(far) times its length at the most, with a volume of one.
@@ -117,10 +118,11 @@ TEST_CASE("forces of a cell are minus the gradient of its energy, flowing or not
     yielding.hardening = 0.3;
     curved.curve = flow_curve(kCurve, kLaw.shear);
     elastic.yield_stress = 1e100;
-    int flowed = 0;
-    for (int n = 0; n < 60; ++n) {
+    int flowed = 0, alone = 0;
+    for (int n = 0; n < 80; ++n) {
         Cell cell = random_cell(draw);
         cell.rubber = n % 3 == 2;
+        if (n >= 60) cell.fill = draw(0.005, 0.06);
         const CellModuli& law = n % 3 != 1 ? elastic : n % 6 == 1 ? yielding : curved;
         if (n % 3 == 1) {
             cell.history.alpha = draw(0, 0.1);
@@ -131,10 +133,44 @@ TEST_CASE("forces of a cell are minus the gradient of its energy, flowing or not
         Corners x = draw.turn() * flowed_so_far * draw.shaken(0.1);
         const State s = state_of(cell, x);
         flowed += n % 3 == 1 && flow_of(law, cell, s).d_alpha > 0;
+        alone += n % 3 == 1 && flow_of(law, cell, s).alone.d_alpha > 0;
         check_forces([&](const Corners& moved) { return energy(law, cell, moved); }, x,
                      force(law, cell, x));
     }
     CHECK(flowed > 10);
+    CHECK(alone > 3);
+}
+
+TEST_CASE("bending of a sliver flows at the yield stress by itself, whatever its mean does") {
+    CellModuli law = kLaw;
+    law.yield_stress = 0.05, law.hardening = 0;
+    const auto stress_of_modes = [&](const Cell& cell, const State& s) {
+        const CellModes<double> q = s.modes - cell.history.modes;
+        const double twice = product(mode_stress(law, taken_back(cell.history), q), q);
+        return std::sqrt(3 * law.shear * mode_share(cell.fill) * twice / kVolume);
+    };
+    for (double fill : {0.01, 0.05}) {
+        Cell cell;
+        cell.fill = fill;
+        double before = 0;
+        for (const auto& [drawn, bent] : {std::pair{0.0, 0.02}, {0.3, 0.02}, {0.3, 2.0}}) {
+            Corners x =
+                Vec3(std::exp(drawn), std::exp(-drawn / 2), std::exp(-drawn / 2)).asDiagonal() *
+                cube();
+            for (int c = 0; c < 8; ++c)
+                x(0, c) += bent * kSpacing * ((c & 1) - 0.5) * ((c >> 1 & 1) - 0.5);
+            const State s = state_of(cell, x);
+            const CellFlowed<double> r = flow_of(law, cell, s);
+            CHECK((r.alone.d_alpha > 0) == (bent > 1));
+            CHECK((r.d_alpha > 1e-3) == (drawn > before));
+            cell.history = flowed_on(cell.history, r, s.gradient, s.sums);
+            before = drawn;
+            const double stress = stress_of_modes(cell, state_of(cell, x));
+            INFO(fill << " " << drawn << " " << bent);
+            if (bent > 1) CHECK(stress == Approx(law.yield_stress).epsilon(0.02));
+            if (bent < 1) CHECK(stress > 0);
+        }
+    }
 }
 
 TEST_CASE("a turned cell is pushed as the cell is, turned") {

@@ -44,14 +44,15 @@ State state_of(const CellModuli& law, const Cell& cell, const Corners& x) {
 }
 // Of the increment: elastic energy after the return, and what the flow takes.
 double taken(const CellModuli& law, const Cell& cell, const BackFlowed<double>& r) {
-    return kVolume * cell.fill * r.d_alpha *
-           (mean_flow_stress(law, cell.history.alpha, r.d_alpha) + r.more);
+    return kVolume * cell.fill *
+           (r.d_alpha * (mean_flow_stress(law, cell.history.alpha, r.d_alpha) + r.more) +
+            r.alone.d_alpha * (r.line.stress + r.line.slope * cell.history.alpha));
 }
 double energy(const CellModuli& law, const Cell& cell, const Corners& x) {
     const State s = state_of(law, cell, x);
     const BackFlowed<double>& r = s.flowed;
     const Symmetric<double> e = r.kept * r.distortion + r.lent * cell.back.strain;
-    const CellModes<double> q = r.kept * r.modes + r.lent * cell.back.modes;
+    const CellModes<double> q = r.kept_modes * r.modes + r.lent * cell.back.modes;
     const double size = cell_size(s.strain).log;
     return kVolume * cell.fill * (law.shear * contract(e, e) + 0.5 * law.bulk * size * size) +
            0.5 * mode_fill(cell.fill) * product(mode_stress(law, taken_back(cell.history), q), q) +
@@ -73,9 +74,9 @@ void commit(const CellModuli& law, Cell& cell, const Corners& x) {
 }
 
 // One that has flowed this way and that, partly filled, and bent, drawn or pressed on the way.
-Cell worked_cell(Draw& draw, const CellModuli& law, double far) {
+Cell worked_cell(Draw& draw, const CellModuli& law, double far, bool is_sliver = false) {
     Cell c;
-    c.fill = draw(0.1, 1);
+    c.fill = is_sliver ? draw(0.005, 0.06) : draw(0.1, 1);
     c.at = {draw(-0.8, 0.8), draw(-0.8, 0.8), draw(-0.8, 0.8)};
     for (int n = 0; n < 4; ++n) commit(law, c, draw.turn() * draw.shaken(far));
     return c;
@@ -112,7 +113,7 @@ TEST_CASE("forces of a cell with a back stress are minus the gradient of its inc
     for (int n = 0; n < 60; ++n) {
         const CellModuli& law = n % 2 ? linear : curved;
         const double far = n < 30 ? 0.02 : 0.1;
-        const Cell cell = worked_cell(draw, law, far);
+        const Cell cell = worked_cell(draw, law, far, n % 10 == 9);
         const Corners x = draw.turn() * draw.shaken(far);
         const State s = state_of(law, cell, x);
         flowed += s.flowed.d_alpha > 0;

@@ -53,7 +53,9 @@ struct Cell {
             if (kind[p] != CellKind::yielding) continue;
             const CellFlowed<double> flowed =
                 flow_cell(law[p], history[p], e.log, s.modes, fill[p]);
-            sum -= volume * fill[p] * saved_by_flow(law[p], history[p].alpha, flowed);
+            sum -= volume * fill[p] *
+                   (saved_by_flow(law[p], history[p].alpha, flowed) +
+                    saved_by_flow(law[p], flowed.alone));
         }
         return sum;
     }
