@@ -171,7 +171,8 @@ Relaxation EquilibriumSearch::solve_smooth(StaticForces& forces, const StaticMov
     const bool converged = found.converged && forces.mirrored == 0;
     newton_pause_ = converged ? 0 : std::clamp(2 * newton_pause_, 1, kLongestPause);
     newton_rests_ = newton_pause_;
-    const bool over = converged && newton_->has_gone_over(forces.matter, move.start);
+    const bool over = converged && newton_->has_gone_over(forces.matter, move.start) &&
+                      !keeps_the_shape(forces.matter, newton_->gave_way_by());
     return {converged, found.steps, found.residual, false, over};
 }
 

@@ -25,6 +25,7 @@ constexpr double kFalls = 0.01, kTurns = 50;
 constexpr bool leaves_rest(double left) { return left < -kFalls && left > -kTurns; }
 constexpr double kNearRest = 1;     // times what it is pushed with, left over
 constexpr double kMostly = 0.5;     // of how far it has gone
+constexpr double kLeastGone = 0.1;  // spacings: less is no other shape
 constexpr double kDownhill = 2;     // spacings, where the curvature is negative
 constexpr double kFarthest = 0.1;   // of the body, for what leaves an equilibrium
 constexpr double kProbe = 0.05;     // spacings, to find how that bends
@@ -186,7 +187,8 @@ bool Newton::has_gone_over(const Aggregate& matter, const Vec3Array& start) cons
     const Vec3Array& x = matter.particle_position;
     const double gone = along([&](std::size_t p) -> Vec3 { return x.at(p) - start.at(p); }) /
                         along([&](std::size_t p) -> Vec3 { return gave_way_.at(p); });
-    return std::abs(gone) * longest_of(gave_way_) > kMostly * farthest_move(x, start);
+    const double far = std::abs(gone) * longest_of(gave_way_);
+    return far > kMostly * farthest_move(x, start) && far > kLeastGone * matter.lattice.spacing;
 }
 
 Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {

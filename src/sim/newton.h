@@ -51,6 +51,7 @@ class Newton {
     // Whether in the last solution it gave way so, near rest, and has gone from `start` most of all
     // by the motion that it gave way to.
     bool has_gone_over(const Aggregate& matter, const Vec3Array& start) const;
+    const Vec3Array& gave_way_by() const { return gave_way_; }  // that motion
 
     // How far the body has gone from `start` by its slowest motion, that of least stiffness for its
     // mass, and how far these forces, left over, would still take it.

@@ -68,3 +68,46 @@ TEST_CASE("corners that slivers alone hold go along with matter that flows far")
     for (int f = 0; f < kFrames; ++f) simulation.advance(at(f), at(f + 1));
     CHECK(longest_edge(matter) < 4);  // 6.8 where slivers flow as all of it does
 }
+
+namespace {
+
+// What a plate bears that presses a tube of lead down by a fifth, its cells many times its wall
+// [N].
+double borne_by_tube(double wall) {
+    constexpr double kDiameter = 0.03, kFar = 0.2 * kDiameter, kThick = 0.01;
+    InputMesh input;
+    input.mesh =
+        make_shape("tube", {{"length", 0.04}, {"diameter", kDiameter}, {"wall", wall}}).mesh;
+    BodySpec body;
+    body.mold.across = 6;
+    body.material.young_modulus = 16e9;
+    body.material.poisson_ratio = 0.44;
+    body.material.density = 11340;
+    body.material.yield_stress = 8e6;
+    WorkPiece piece = make_work_piece(input, body, {});
+    Apparatus apparatus;
+    Drive from;
+    for (const double side : {-1.0, 1.0}) {
+        apparatus.tool.push_back({"plate", BoxShape{Vec3(0.06, kThick, 0.06), 0.0}, 0.3});
+        from.world_from_tool.push_back(
+            {Quat::Identity(), Vec3(0, side * 0.5 * (kDiameter + kThick), 0)});
+    }
+    Simulation simulation(piece.matter, apparatus, {});
+    constexpr int kFrames = 4;
+    double borne = 0;
+    for (int f = 0; f < kFrames; ++f) {
+        Drive to = from;
+        to.time += 1;
+        to.world_from_tool[1].translation.y() -= kFar / kFrames;
+        borne = std::abs(simulation.advance(from, to).load[1].force.y());
+        from = to;
+    }
+    return borne;
+}
+
+}  // namespace
+
+TEST_CASE("a wall of a twentieth of a cell bears by its thickness, as one of a tenth does") {
+    const double thin = 0.2e-3, thick = 0.5e-3;
+    CHECK(borne_by_tube(thin) / thin == Approx(borne_by_tube(thick) / thick).epsilon(0.1));
+}
