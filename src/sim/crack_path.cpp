@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/crack_path.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "base/principal_axes.h"
 #include "sim/cell_volume.h"
 
 namespace swage {
@@ -54,7 +54,7 @@ Mat3 stretch_of(const Aggregate& matter, const CellRun& run, int n) {
 }
 
 Vec3 largest_direction(const Mat3& tensor) {
-    return Eigen::SelfAdjointEigenSolver<Mat3>(tensor).eigenvectors().col(2);
+    return principal_axes(tensor).axis.col(2);
 }
 
 bool is_in_line(const Vec3i& way, const Vec3& pull) {
@@ -101,10 +101,10 @@ double off_track_factor(const Aggregate& matter, const FractureLaws& laws,
     for_cells_near(matter.lattice, cell.site, kPullReach,
                    [&](const CellRun& run, int n, const Vec3i&) {
                        if (!is_sound(matter, run, n)) return;
-                       const Eigen::SelfAdjointEigenSolver<Mat3> c(stretch_of(matter, run, n));
-                       const double most = c.eigenvalues()[2] - 1;
+                       const PrincipalAxes c = principal_axes(stretch_of(matter, run, n));
+                       const double most = c.value[2] - 1;
                        if (most <= 0) return;
-                       const Vec3 along = c.eigenvectors().col(2);
+                       const Vec3 along = c.axis.col(2);
                        pull += most * most * most * most * along * along.transpose();
                    });
     // It may be that nothing around it is drawn out: it has reached its strength off its middle.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/cracking.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/principal_axes.h"
 #include "laws/strain_bound.h"
 #include "sim/cell_batch.h"
 #include "sim/cell_volume.h"
@@ -36,8 +36,7 @@ double material_strain(const Aggregate& matter, const CellRun& run, int n, doubl
         const Mat3 a = flowed_stretch(matter, run.first + n);
         c = a * c * a;
     }
-    const double largest =
-        Eigen::SelfAdjointEigenSolver<Mat3>(c, Eigen::EigenvaluesOnly).eigenvalues()[2];
+    const double largest = principal_values(c)[2];
     return std::sqrt(largest) - 1;
 }
 

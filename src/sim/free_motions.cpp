@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "base/principal_axes.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -37,10 +38,10 @@ class RigidMotions {
                 });
             }
         }
-        const Eigen::SelfAdjointEigenSolver<Mat3> axes(second.trace() * Mat3::Identity() - second);
+        const PrincipalAxes axes = principal_axes(second.trace() * Mat3::Identity() - second);
         shift_ = Mat3::Identity() / std::sqrt(whole);
         for (int d = 0; d < 3; ++d) {
-            turn_.col(d) = axes.eigenvectors().col(d) / std::sqrt(axes.eigenvalues()[d]);
+            turn_.col(d) = axes.axis.col(d) / std::sqrt(axes.value[d]);
         }
     }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <utility>
 
+#include "base/principal_axes.h"
 #include "geometry/disjoint_sets.h"
 #include "matter/connections.h"
 
@@ -217,8 +218,7 @@ Pieces find_firm_pieces(const Aggregate& matter, const std::vector<HeldPoint>& h
     std::vector<char> is_firm = joined;
     for (std::size_t p = 0; p < is_firm.size(); ++p) {
         if (joined[p]) continue;
-        const Eigen::SelfAdjointEigenSolver<Mat3> ways(stiffness[p], Eigen::EigenvaluesOnly);
-        is_firm[p] = ways.eigenvalues()[0] > kFree;
+        is_firm[p] = principal_values(stiffness[p])[0] > kFree;
     }
     // From whole cells on, then from what has none near it.
     for (bool anew : {false, true}) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/mixed_cells.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "base/portable_math.h"
+#include "base/principal_axes.h"
 #include "laws/cell_growth.h"
 #include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
@@ -117,8 +117,7 @@ std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector
         const Columns<double> f = gradient_of(one, cell, p) * taken_back(one.phase[p].history);
         Mat3 g;
         g << f.x.x, f.y.x, f.z.x, f.x.y, f.y.y, f.z.y, f.x.z, f.y.z, f.z.z;
-        const Eigen::SelfAdjointEigenSolver<Mat3> c(g.transpose() * g, Eigen::EigenvaluesOnly);
-        largest[p] = std::sqrt(c.eigenvalues()[2]) - 1;
+        largest[p] = std::sqrt(principal_values(g.transpose() * g)[2]) - 1;
     }
     return largest;
 }

@@ -2,10 +2,10 @@
 #include "sim/steadying.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "base/principal_axes.h"
 #include "matter/point_side.h"
 #include "sim/piece_sums.h"
 
@@ -17,11 +17,11 @@ namespace {
 Vec3 across(const Mat3& axes, double count, const Vec3& push) {
     constexpr double kBarred = 1e-6;  // of all points: more than rounding
     if (!(count > 0)) return push;
-    const Eigen::SelfAdjointEigenSolver<Mat3> along(axes / count);
+    const PrincipalAxes along = principal_axes(axes / count);
     Vec3 left = Vec3::Zero();
     for (int n = 0; n < 3; ++n) {
-        if (along.eigenvalues()[n] > kBarred) continue;
-        const Vec3 way = along.eigenvectors().col(n);
+        if (along.value[n] > kBarred) continue;
+        const Vec3 way = along.axis.col(n);
         left += way.dot(push) * way;
     }
     return left;

@@ -5,12 +5,11 @@
 // no plane does; drawn to one all the same, corners of crumbs went off by several cells.
 #include "skin/cut_faces.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/portable_math.h"
+#include "base/principal_axes.h"
 #include "geometry/disjoint_sets.h"
 
 namespace swage {
@@ -42,8 +41,7 @@ struct PlaneFit {
     // Normal and height; coordinates must be near the origin of their own.
     CutTarget plane() const {
         const Vec3 mean = sum / weight;
-        const Eigen::SelfAdjointEigenSolver<Mat3> eigen(square / weight - mean * mean.transpose());
-        const Vec3 normal = eigen.eigenvectors().col(0);
+        const Vec3 normal = principal_axes(square / weight - mean * mean.transpose()).axis.col(0);
         return {normal, normal.dot(mean)};
     }
 };

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "skin/particle_frames.h"
 
-#include <Eigen/Eigenvalues>
-
 #include "base/parallel.h"
+#include "base/principal_axes.h"
 
 namespace swage {
 
@@ -76,13 +75,13 @@ struct Fit {
 
 // F - I from the fit; false where the neighbours do not span the space.
 bool solve_fit(const Fit& fit, Mat3& gradient) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(fit.spread);
-    const Mat3 direction = eigen.eigenvectors();  // by ascending eigenvalue
-    Mat3 image = direction;                       // F q
+    const PrincipalAxes principal = principal_axes(fit.spread);
+    const Mat3& direction = principal.axis;
+    Mat3 image = direction;  // F q
     int known = 0;
     for (int n = 0; n < 3; ++n) {
-        if (eigen.eigenvalues()[n] < 1e-3) continue;  // of whole lattice steps: 0, or about 1
-        image.col(n) += fit.change * direction.col(n) / eigen.eigenvalues()[n];
+        if (principal.value[n] < 1e-3) continue;  // of whole lattice steps: 0, or about 1
+        image.col(n) += fit.change * direction.col(n) / principal.value[n];
         ++known;
     }
     if (known < 3) complete_rigidly(direction, known, image);

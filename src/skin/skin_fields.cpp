@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "skin/skin_fields.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
+#include "base/principal_axes.h"
 #include "matter/broken_cells.h"
 #include "matter/mixed_place.h"
 
@@ -169,11 +169,11 @@ class Fitter {
             spread += other.volume / volume * way * way.transpose();
             rise += other.volume / volume * (parts_of(other) - mean) * way.transpose();
         });
-        const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
+        const PrincipalAxes axes = principal_axes(spread);
         for (int i = 0; i < 3; ++i) {
-            if (axes.eigenvalues()[i] < kLeastSpread) continue;
-            const Vec3 axis = axes.eigenvectors().col(i);
-            line.slope += rise * axis / axes.eigenvalues()[i] * axis.transpose();
+            if (axes.value[i] < kLeastSpread) continue;
+            const Vec3 axis = axes.axis.col(i);
+            line.slope += rise * axis / axes.value[i] * axis.transpose();
         }
         const double full = std::min(1.0, s.volume);
         line.at = full * line.at + (1 - full) * (mean + line.slope * (s.place - place));
@@ -258,7 +258,7 @@ class Numbers {
         s << parts_[0], parts_[3], parts_[5], parts_[3], parts_[1], parts_[4], parts_[5], parts_[4],
             parts_[2];
         s = mean_ * Mat3::Identity() + share_ * (s - mean_ * Mat3::Identity());
-        return Eigen::SelfAdjointEigenSolver<Mat3>(s, Eigen::EigenvaluesOnly).eigenvalues()[2];
+        return principal_values(s)[2];
     }
     // By Hooke's law, as what breaks does so at small strains.
     double strength_use() const {
