@@ -55,14 +55,14 @@ SWAGE_INLINE CellShare<V> share_of(const SlabTask& task, std::int32_t shares, in
             {load<V>(from + kLanes), load<V>(from + 2 * kLanes), load<V>(from + 3 * kLanes)}};
 }
 
-// kWatched: strains are.
-template <int kWidth, CellKind kKind, bool kWatched>
+template <int kWidth, CellKind kKind>
 SWAGE_INLINE void slab_forces(SlabTask& task) {
     typedef LanesOf<kWidth> V;
     typename LaneBatch<kWidth>::Indices lane;
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
     const std::int32_t* batch = task.batch;
     const ParticleId slab_end = task.slab->end;
+    const bool watched = task.strained > 0;
     for (const CellRun* run = task.run; run != task.run_end; ++run) {
         const ParticleId reach = std::min(slab_end, run->row[3] + run->count + 1);
         if (reach > task.zeroed) {
@@ -83,7 +83,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             V size = dot(d.x, cross(d.y, d.z));
             if (count < kWidth) size = lane < count ? size : smallest;
             smallest = size < smallest ? size : smallest;
-            if constexpr (kWatched) {
+            if (watched) {
                 V strain = strain_measure(c, task.constants->gram,
                                           shares == kWholeCells ? kInMiddle : kAnywhere);
                 if (count < kWidth) strain = lane < count ? strain : V{};
@@ -125,20 +125,16 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
         }
         if (crushed) task.crushed_run->push_back(run);
         if (can_flow(kKind) && yields) task.yielding_run->push_back(run);
-        if (kWatched && strains) task.strained_run->push_back(run);
+        if (watched && strains) task.strained_run->push_back(run);
         batch += batches_of(*run);
     }
     task.batch = batch;
 }
 
-template <CellKind kKind, bool kWatched>
-void slab_of(SlabTask& task) {
-    by_width([&]<int kWidth>()
-                 __attribute__((always_inline)) { slab_forces<kWidth, kKind, kWatched>(task); });
-}
 void sweep_slab(CellKind kind, SlabTask& task) {
     by_kind(kind, [&]<CellKind kKind>() {
-        task.strained > 0 ? slab_of<kKind, true>(task) : slab_of<kKind, false>(task);
+        by_width([&]<int kWidth>()
+                     __attribute__((always_inline)) { slab_forces<kWidth, kKind>(task); });
     });
 }
 
