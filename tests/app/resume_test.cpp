@@ -81,19 +81,22 @@ TEST_CASE(
     }));
     INFO(name);
     const Scratch scratch;
-    const fs::path scene = put_scene(scratch.path(), text), whole = scratch.path() / "whole";
+    const fs::path scene = put_scene(scratch.path(), text), whole = scratch.path() / "whole",
+                   out = scratch.path() / "run";
     const Outcome at_once = run(scene, whole);
     INFO(at_once.err);
     REQUIRE(at_once.code == 0);
     const std::uintmax_t size = fs::file_size(whole / "motion.bin");
+    // It ends early, goes on, ends early again, and goes on from there.
     for (const double share : {0.5, 0.95}) {
-        const fs::path out = scratch.path() / fmt::format("run{}", share);
-        {
-            const SmallDisk disk(static_cast<std::uintmax_t>(share * double(size)));
-            CHECK(run(scene, out, kAtStagesAlone).code == 5);
-        }
-        check_goes_through(scene, whole, out, "goes on after stage ");
+        const SmallDisk disk(static_cast<std::uintmax_t>(share * double(size)));
+        const Outcome outcome = run(scene, out, kAtStagesAlone);
+        INFO(outcome.err);
+        CHECK(outcome.code == 5);
+        const Json record = parse_json(bytes_of(out / "run.json"));
+        CHECK(record.contains("went_on_from") == (share > 0.5));
     }
+    check_goes_through(scene, whole, out, "goes on after stage ");
 }
 
 TEST_CASE("a run that was killed or interrupted within a stage goes on from the one before") {
@@ -196,7 +199,6 @@ TEST_CASE(
                       twist = "[[stage]]\nmachine = \"twist\"\nangle = \"9 deg\"\nframes = 3\n";
     const fs::path scene = put_scene(scratch.path(), head + first + second),
                    whole = scratch.path() / "whole", out = scratch.path() / "run";
-    end_in_second_stage(GENERATE(SIGINT, SIGKILL), scene, out);
     const auto as = [&](const std::string& text) { put_text(scene, text); };
     // But for what a killed run did not clear away, and what of its motion file is not whole.
     const auto kept = [&] {
@@ -207,7 +209,11 @@ TEST_CASE(
         files.erase("resume/motion.bin");
         return files;
     };
-    const auto before = kept();
+    std::map<std::string, std::string> before;
+    const auto end_by = [&](int signal) {
+        end_in_second_stage(signal, scene, out);
+        before = kept();
+    };
     const auto is_refused = [&](const std::vector<std::string>& more, const std::string& told) {
         const Outcome outcome = run(scene, out, more);
         INFO(outcome.err);
@@ -216,26 +222,34 @@ TEST_CASE(
         CHECK((kept() == before));
     };
     SECTION("another machine, and one more") {
+        end_by(SIGKILL);
         as(head + first + twist + second);
         is_refused({}, "choose another --out, or --go-on to keep its first stage, or --fresh");
     }
     SECTION("a remark and a parameter") {
+        end_by(SIGINT);
         as("# Softly.\n" + head + first + "\n\n" + second + "radius = \"4 cm\"\n");
     }
-    SECTION("fewer") { as(head + first); }
+    SECTION("fewer") {
+        end_by(SIGKILL);
+        as(head + first);
+    }
     SECTION("another first stage") {
+        end_by(SIGINT);
         as(head + twist + second);
         is_refused({}, "choose another --out, or --fresh");
         is_refused({"--go-on"}, "has kept no stage to go on from that is the same");
         return;
     }
     SECTION("another material") {
+        end_by(SIGKILL);
         as(kMesh + metal("friction = 0.5\n") + "[output]\nmeshes_per_frame = true\n" + first +
            twist);
         is_refused({"--go-on"}, "has kept no stage to go on from that is the same");
         return;
     }
     SECTION("a stage that cannot be set up leaves what was there") {
+        end_by(SIGINT);
         as(head + first + twist + "[[stage]]\nmachine = \"bend\"\n");
         CHECK(run(scene, out,
                   {"--go-on", "--set", "stage.2.machine=bend", "--set", "stage.2.radius=1 um"})

@@ -231,7 +231,8 @@ TEST_CASE("a checkpoint that is damaged, cut short or foreign is told from a who
         put_bytes(file, bytes);
         return !read_checkpoint(file, kKeys, why) && why == "is damaged";
     };
-    for (std::size_t at = 0; at < whole.size(); at += at < 300 ? 1 : 4999) {
+    const std::size_t far = whole.size() / 150;
+    for (std::size_t at = 0; at < whole.size(); at += at < 300 ? 1 : far) {
         std::string bytes = whole;
         bytes[at] = static_cast<char>(bytes[at] ^ 0x41);
         CHECK(refused(bytes));
