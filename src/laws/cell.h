@@ -37,8 +37,8 @@
 // The modes of slivers, f < 0.06, flow by themselves: t of E alone, and
 //
 //     t_q^2 = 6 mu f^2 W_q / V
-//     t_q > sigma_y + H alpha:  d_alpha = (t_q - sigma_y - H alpha) / (3 mu) more
-//                               A q <- (1 - 3 mu d_alpha / t_q) A q
+//     t_q > t_y = n (sigma_y + H alpha):  d_alpha = (t_q - t_y) / (3 mu) more
+//                                         A q <- t_y / t_q A q
 //
 //
 // so that what flows stays elastic strain and stress, and only these, however far it has gone; all
@@ -339,8 +339,9 @@ SWAGE_INLINE N mode_fill(const N& fill) {
 
 // Whether the modes of a cell flow as its mean does, 1 or 0. NOTE: where those of slivers did,
 // corners that no other cell has went off by up to 28 cells as bodies were twisted or pressed far,
-// for that takes the strain off the sliver. Where they do not flow at all, a tube whose wall is a
-// twentieth of a cell bears 25 times as much as it should, and what is twisted 15 % more.
+// for that takes the strain off the sliver; and they do where these flow by themselves at the yield
+// stress itself, as what is forced on them now and then lets the rest creep. Where they do not flow
+// at all, what is twisted asks for up to 15 % more.
 template <typename N>
 SWAGE_INLINE N mode_flow(const N& fill) {
     const N lacks = larger(kFlowingFill - fill, 0.0 * fill);

@@ -230,7 +230,7 @@ inline double saved_by_flow(const CellModuli& law, double alpha, const BackStrai
                   r.kept_modes * r.modes + r.lent * back.modes,
                   r.kept_modes * r.mode_stress + r.lent * r.back_stress) -
            r.d_alpha * (mean_flow_stress(law, alpha, r.d_alpha) + r.more) -
-           r.alone.d_alpha * (r.line.stress + r.line.slope * alpha);
+           r.alone.took;
 }
 
 // 2 dw/dC of dw/dE = t, of any axes: (I - Y) (t + (t Y^2 + Y t Y + Y^2 t) / 3 + ...) (I - Y).

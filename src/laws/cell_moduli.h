@@ -13,10 +13,12 @@ namespace swage {
 // less, slivers flap about and no solver is quick. 0.001 changes the stiffness of oblique bars 4
 // cells across by 0.1 % from this.
 inline constexpr double kLeastModeFill = 0.03;
-// Modes of cells that are filled by less do not flow. All corners that went off (mode_flow()) were
-// of cells up to this. With 0.17, where the above ends, a gear of lead 4 cells across, pressed by
-// 0.4, takes 5 % more work than where all modes flow; with this 2 %.
+// Modes of cells that are filled by less flow by themselves. All corners that went off (mode_flow())
+// were of cells up to this.
 inline constexpr double kFlowingFill = 0.06;
+// And at so many times the yield stress where other cells of the body are fuller; bodies that have
+// no fuller ones than this are walls whose bending is all they have.
+inline constexpr double kSliverStrength = 10, kThinFill = 0.15;
 
 // One material at one spacing.
 struct CellModuli {
@@ -32,6 +34,7 @@ struct CellModuli {
     FlowCurve curve;      // instead of sigma_y + H alpha where it is not empty
     // laws/cell_back.h: X_s [Pa], 0: none; gamma.
     double back_stress = 0, back_rate = 0;
+    double sliver_strength = kSliverStrength;  // see there
 };
 
 inline constexpr double kMostStiffened = 1000;

@@ -47,15 +47,17 @@ struct ModesReturn {
     N over;  // as above
     N d_alpha;
     N kept;
+    N took;  // per volume of material [J/m3]
 };
 template <typename N>
 SWAGE_INLINE ModesReturn<N> return_modes(const CellModuli& law, const CellReturn<N>& mean,
                                          const N& mode_energy, const N& alpha) {
     const double volume = law.spacing * law.spacing * law.spacing;
     const N stress = root((3 * law.shear / volume) * mode_energy) + 1e-300;
-    const N over = stress - mean.line.stress - mean.line.slope * alpha;
-    const N flows = larger(over, 0.0 * over);
-    return {over, (1.0 / (3 * law.shear)) * flows, 1.0 - flows / stress};
+    const N yield = law.sliver_strength * (mean.line.stress + mean.line.slope * alpha);
+    const N over = stress - yield, flows = larger(over, 0.0 * over);
+    const N d_alpha = (1.0 / (3 * law.shear)) * flows;
+    return {over, d_alpha, 1.0 - flows / stress, yield * d_alpha};
 }
 
 // What flow takes per d_alpha [Pa].

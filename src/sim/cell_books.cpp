@@ -138,9 +138,8 @@ SWAGE_INLINE void add_flow(BookTask& task) {
         ();
         V flows{};
         bool any = false;
-        const V d_alpha = r.whole_d_alpha();
         for (int l = 0; l < count; ++l) {
-            const bool does = c.fill[l] > 0 && d_alpha[l] > 0;
+            const bool does = c.fill[l] > 0 && (r.d_alpha[l] > 0 || r.alone.d_alpha[l] > 0);
             flows[l] = does;
             any = any || does;
         }
@@ -152,12 +151,12 @@ SWAGE_INLINE void add_flow(BookTask& task) {
         // The stress that did the flow's work is the one after the return, less what hardening
         // stores: hardening is booked as lost, and what the back stress stores too, until flow back
         // takes it from there.
-        const V flowed = volume * c.fill * d_alpha;
+        const V part = volume * c.fill;
         for (int l = 0; l < count; ++l) {
             if (!(flows[l] > 0)) continue;
-            double stress = mean_flow_stress(law, c.history.alpha[l], d_alpha[l]);
+            double stress = mean_flow_stress(law, c.history.alpha[l], r.d_alpha[l]);
             if constexpr (kShifts) stress += r.more[l];
-            task.sum += flowed[l] * stress;
+            task.sum += part[l] * (r.d_alpha[l] * stress + r.alone.took[l]);
         }
         CellHistory<V> after;
         if constexpr (kShifts) {

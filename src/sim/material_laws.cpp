@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/material_laws.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "laws/layer_guard.h"
@@ -11,6 +12,8 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
     constexpr double kNeverYields = 1e100;  // [Pa]
     std::vector<MaterialLaw> laws;
     const bool cells = matter.material.mechanics == Mechanics::cells;
+    const bool is_thin =
+        std::ranges::none_of(matter.cell_fill, [](float fill) { return fill > kThinFill; });
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
         const Material& m = matter.material_at(n);
         const bool foam = cells && m.elasticity == Elasticity::storakers;
@@ -25,6 +28,7 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
                                     flows ? m.yield_stress : kNeverYields, yields ? m.hardening : 0,
                                     flows ? m.flow_curve : std::vector<FlowPoint>()),
                         kind});
+        if (is_thin) laws.back().moduli.sliver_strength = 1;
         if (!shifts) continue;
         laws.back().moduli.back_stress = m.back_stress;
         laws.back().moduli.back_rate = 1 / m.back_strain;

@@ -205,8 +205,8 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
             const CellFlowed<double>& r = one.found.phase[p].flowed;
             if (one.phase[p].kind != CellKind::yielding || !(r.whole_d_alpha() > 0)) continue;
             const CellModuli& law = *one.phase[p].law;
-            lost += volume * one.phase[p].fill * r.whole_d_alpha() *
-                    mean_flow_stress(law, one.phase[p].history.alpha, r.whole_d_alpha());
+            const double stress = mean_flow_stress(law, one.phase[p].history.alpha, r.d_alpha);
+            lost += volume * one.phase[p].fill * (r.d_alpha * stress + r.alone.took);
             const CellHistory<double> after =
                 flowed_on(one.phase[p].history, r, one.found.phase[p].gradient, one.sums);
             for_each_number(after, [&](int s, const double& now) {

@@ -17,6 +17,7 @@ CellModuli law_of(double yield_stress, double hardening, const std::vector<FlowP
     CellModuli law = cell_moduli(7.0, 0.3, kSpacing, yield_stress, hardening, curve);
     law.back_stress = kBack;
     law.back_rate = 1 / kOver;
+    law.sliver_strength = 0.2;
     return law;
 }
 
@@ -46,7 +47,7 @@ State state_of(const CellModuli& law, const Cell& cell, const Corners& x) {
 double taken(const CellModuli& law, const Cell& cell, const BackFlowed<double>& r) {
     return kVolume * cell.fill *
            (r.d_alpha * (mean_flow_stress(law, cell.history.alpha, r.d_alpha) + r.more) +
-            r.alone.d_alpha * (r.line.stress + r.line.slope * cell.history.alpha));
+            r.alone.took);
 }
 double energy(const CellModuli& law, const Cell& cell, const Corners& x) {
     const State s = state_of(law, cell, x);
@@ -109,7 +110,7 @@ TEST_CASE("forces of a cell with a back stress are minus the gradient of its inc
     Draw draw;
     const CellModuli linear = law_of(0.05, 0.3),
                      curved = law_of(0, 0, {{0, 0.05}, {0.03, 0.1}, {0.2, 0.12}});
-    int flowed = 0, turned = 0;
+    int flowed = 0, turned = 0, alone = 0;
     for (int n = 0; n < 60; ++n) {
         const CellModuli& law = n % 2 ? linear : curved;
         const double far = n < 30 ? 0.02 : 0.1;
@@ -117,6 +118,7 @@ TEST_CASE("forces of a cell with a back stress are minus the gradient of its inc
         const Corners x = draw.turn() * draw.shaken(far);
         const State s = state_of(law, cell, x);
         flowed += s.flowed.d_alpha > 0;
+        alone += s.flowed.alone.d_alpha > 0;
         // How much the flow's way is another than that of the back stress.
         const double both = contract(s.flowed.distortion, cell.back.strain);
         turned += both * both < 0.8 * contract(s.flowed.distortion, s.flowed.distortion) *
@@ -128,6 +130,7 @@ TEST_CASE("forces of a cell with a back stress are minus the gradient of its inc
     }
     CHECK(flowed > 40);
     CHECK(turned > 30);
+    CHECK(alone > 2);
 }
 
 TEST_CASE("pulled and pressed again and again a cell bears what the law says, in any steps") {
