@@ -8,37 +8,18 @@
 #include "machines/parameters.h"
 #include "machines/touch.h"
 #include "mold/mold.h"
-#include "scene/read_machine.h"
 #include "sim/sever.h"
-#include "tests/catch.h"
-#include "tests/machines/bodies.h"
+#include "tests/scene/shipped_machines.h"
 #include "tests/shared/block.h"
 
 using namespace swage;
+using test::at_bar;
+using test::index_of;
+using test::kMachines;
 
 namespace {
 
 using Given = std::map<std::string, double>;
-
-const std::filesystem::path kMachines = std::filesystem::path(SWAGE_SOURCE_DIR) / "machines";
-
-MachineSpec shipped(const std::string& name) {
-    const MachineReading reading = read_machine(kMachines / (name + ".toml"));
-    for (const Mistake& mistake : reading.mistakes) FAIL_CHECK(mistake.text);
-    REQUIRE(reading.machine);
-    return *reading.machine;
-}
-
-Machine at_bar(const std::string& name, const Given& given = {}, const Aggregate& body = bar()) {
-    return build_machine(shipped(name), given, place_work_frame(body), body);
-}
-
-int index_of(const std::vector<Tool>& tools, const std::string& name) {
-    const auto found = std::find_if(tools.begin(), tools.end(),
-                                    [&](const Tool& tool) { return tool.name == name; });
-    REQUIRE(found != tools.end());
-    return static_cast<int>(found - tools.begin());
-}
 
 // Of the pose since the start, about the world's z axis.
 double turned(const Pose& start, const Pose& now) {
@@ -106,7 +87,7 @@ TEST_CASE("every shipped machine stands with its defaults at boxes of any propor
     }
     const WorldAxis axes[] = {WorldAxis::x, WorldAxis::y, WorldAxis::z};
     for (const auto& entry : std::filesystem::directory_iterator(kMachines)) {
-        const MachineSpec spec = shipped(entry.path().stem().string());
+        const MachineSpec spec = test::shipped_machine(entry.path().stem().string());
         for (const auto& [name, body] : bodies) {
             for (const WorldAxis axis : axes) {
                 for (const WorldAxis up : axes) {
@@ -476,6 +457,6 @@ TEST_CASE("a machine that stops does so without a jump, and what presses comes n
             CHECK(apart(pose(1, stop), pose(1, 1)) < 1e-12);
         }
     }
-    CHECK_FALSE(shipped("hold").stops);
-    CHECK_FALSE(shipped("cut").stops);
+    CHECK_FALSE(test::shipped_machine("hold").stops);
+    CHECK_FALSE(test::shipped_machine("cut").stops);
 }
