@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/catalogue.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "scene/document.h"
 #include "scene/read_look.h"
 #include "scene/read_material.h"
@@ -46,9 +49,16 @@ MaterialCatalogue material_catalogue(const AssetPaths& assets,
                 material.name = entry.key;
                 TableReader table(entry.value, "[" + entry.key + "]", reading);
                 read_material_numbers(table, true, material);
-                read_look(table, catalogue.look.emplace_back());
+                std::optional<SurfaceMaterial> look;
+                read_look(table, look);
                 table.finish();
-                catalogue.material.push_back(material);
+                // The scene's own come first, and stand in for those that ship.
+                const bool is_known =
+                    std::any_of(catalogue.material.begin(), catalogue.material.end(),
+                                [&](const Material& one) { return one.name == material.name; });
+                if (is_known) continue;
+                catalogue.material.push_back(std::move(material));
+                catalogue.look.push_back(std::move(look));
             }
             reading.known.clear();  // one material's keys belong in no other
             reading.report_unknown();

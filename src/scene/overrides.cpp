@@ -5,7 +5,11 @@
 #include <charconv>
 
 #include "base/suggest.h"
+#include "base/text.h"
 #include "geometry/text_scan.h"
+#include "scene/read_body.h"
+#include "scene/read_load.h"
+#include "scene/read_stage.h"
 
 namespace swage {
 
@@ -26,6 +30,26 @@ std::string text_under(const Node& table, std::string_view key) {
     return entry != nullptr && entry->value.kind == Node::Kind::text ? entry->value.text : "";
 }
 
+// What messages call the n-th table of an array where it has no name; empty: nothing.
+std::string usual_name(const std::string& of, std::size_t n, const std::string& machine) {
+    if (of == "body") return usual_body_name(n + 2);  // after the work-piece
+    if (of == "stage") return usual_stage_name(n + 1, machine);
+    return of == "load" ? usual_load_name(n + 1) : "";
+}
+
+// Of `count` tables; `names`: what those are called that are called anything.
+std::string which_there_are(std::size_t count, const std::vector<std::string>& names) {
+    constexpr std::size_t kMostNames = 8;
+    const std::string there = fmt::format("there {} {}: ", count == 1 ? "is" : "are", count);
+    if (names.size() == 1 && count == 1) return there + names.front();
+    if (names.empty()) return there + fmt::format("1 to {}, or * for all", count);
+    return fmt::format("{}{} (1 to {} in the file's order; * for all)", there,
+                       names.size() <= kMostNames
+                           ? joined(names, ", ")
+                           : fmt::format("{} to {}", names.front(), names.back()),
+                       count);
+}
+
 // The tables of an array that `which` means.
 std::vector<Node*> chosen(Node& array, const std::string& of, const std::string& which,
                           const Place& place, MistakeList& mistakes) {
@@ -33,26 +57,26 @@ std::vector<Node*> chosen(Node& array, const std::string& of, const std::string&
     std::size_t number = 0;
     const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), number);
     const bool is_number = error == std::errc() && end == which.data() + which.size();
-    std::vector<std::string> names;
+    std::vector<std::string> names, known;
     for (std::size_t n = 0; n < array.item.size(); ++n) {
         Node& item = array.item[n];
         if (item.kind != Node::Kind::table) continue;
-        const std::string name = text_under(item, "name"), machine = text_under(item, "machine");
+        const std::string machine = text_under(item, "machine");
+        std::string name = text_under(item, "name");
+        if (name.empty()) name = usual_name(of, n, machine);
         const bool is_meant =
             is_number ? number == n + 1
                       : which == "*" || (!which.empty() && (which == name || which == machine));
         if (is_meant) found.push_back(&item);
+        if (!name.empty()) names.push_back(name);
         for (const std::string& one : {name, machine}) {
-            if (!one.empty()) names.push_back(one);
+            if (!one.empty()) known.push_back(one);
         }
     }
     if (found.empty()) {
-        mistakes.add(place,
-                     fmt::format("there is no {} \"{}\"{}", of, which,
-                                 hint_and(did_you_mean(which, names),
-                                          fmt::format("there {} {}: 1 to {}, or * for all",
-                                                      array.item.size() == 1 ? "is" : "are",
-                                                      array.item.size(), array.item.size()))));
+        mistakes.add(place, fmt::format("there is no {} \"{}\"{}", of, which,
+                                        hint_and(did_you_mean(which, known),
+                                                 which_there_are(array.item.size(), names))));
     }
     return found;
 }

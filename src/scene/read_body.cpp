@@ -115,6 +115,8 @@ void read_mesh_section(TableReader& table, const fs::path& scene_folder, BodySpe
     table.finish();
 }
 
+std::string usual_body_name(std::size_t number) { return fmt::format("body-{}", number); }
+
 void refuse_look(TableReader& table, const BodySpec& body) {
     if (!body.wears_material) return;
     if (body.color) table.mistake("look", "look = \"material\" excludes a color: give one of them");
@@ -142,7 +144,7 @@ void read_mold(TableReader& table, BodySpec& body) {
 }
 
 void BodyReader::read_name(TableReader& table, const SceneSpec& scene, BodySpec& body) {
-    body.name = fmt::format("body-{}", scene.body.size() + 1);
+    body.name = usual_body_name(scene.body.size() + 1);
     const bool is_named = table.text("name", body.name);
     if (const auto reason = why_no_file_name(body.name); is_named && reason) {
         table.mistake("name", fmt::format("the name {}; it is used in file names", *reason));

@@ -13,6 +13,9 @@ namespace swage {
 void read_mesh_section(TableReader& table, const std::filesystem::path& scene_folder,
                        BodySpec& body);
 
+// What a body is called that nobody names; the work-piece is number 1.
+std::string usual_body_name(std::size_t number);
+
 // Once its material is known.
 void refuse_look(TableReader& table, const BodySpec& body);
 

@@ -19,6 +19,8 @@ bool is_reserved(const std::string& name) {
                        [&](const BookEntry& entry) { return entry.column == name + " work [J]"; });
 }
 
+std::string usual_load_name(std::size_t number) { return fmt::format("load_{}", number); }
+
 std::string read_part_name(TableReader& table, std::set<std::string>& names) {
     std::string name;
     if (!table.text("name", name)) {

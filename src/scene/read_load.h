@@ -24,6 +24,9 @@ bool is_part_name(const std::string& text);
 // The name of a part of a machine, needed, new and then among `names`.
 std::string read_part_name(TableReader& table, std::set<std::string>& names);
 
+// What a load of a scene is called that nobody names; the stage's first is number 1.
+std::string usual_load_name(std::size_t number);
+
 // All keys but the name. `expression` sees all but t.
 void read_load_keys(TableReader& table, ExpressionReader& expression, LoadSpec& load);
 

@@ -204,8 +204,8 @@ void warn_of_strange_yield(TableReader& table, const Material& material) {
 
 void read_material(TableReader& table, const AssetPaths& assets,
                    const std::filesystem::path& scene_folder, Material& material,
-                   std::optional<SurfaceMaterial>& look,
-                   std::vector<std::filesystem::path>& inputs) {
+                   std::optional<SurfaceMaterial>& look, std::vector<std::filesystem::path>& inputs,
+                   bool is_there) {
     const Node* node = table.find("name");
     std::string name;
     const bool is_named = table.text("name", name);
@@ -217,7 +217,7 @@ void read_material(TableReader& table, const AssetPaths& assets,
         known = material;
     } else if (is_named && node->kind == Node::Kind::text) {
         table.mistake("name", "the material's name is empty");
-    } else if (table.place().line == 0) {
+    } else if (!is_there) {
         if (table.reading().is_complete) {
             table.mistake("name",
                           "the section [material] is missing: give it a name, such as "

@@ -16,9 +16,10 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
 
 // The section [material] of a scene: a known material, with its own numbers over it, or a custom
 // one, and how it looks, where that is told. Materials are looked up when a name asks for one.
+// `is_there`: neither the file nor an override gives the section where not.
 void read_material(TableReader& table, const AssetPaths& assets,
                    const std::filesystem::path& scene_folder, Material& material,
-                   std::optional<SurfaceMaterial>& look,
-                   std::vector<std::filesystem::path>& inputs);
+                   std::optional<SurfaceMaterial>& look, std::vector<std::filesystem::path>& inputs,
+                   bool is_there = true);
 
 }  // namespace swage

@@ -135,27 +135,35 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     Node absent;  // a section that is not there stands nowhere in the file
     absent.place = {document.source, 0, 0};
     TableReader root(document.root, "the scene", reading);
+    const auto is_there = [&](const std::string& name) {
+        const Node* node = root.find(name);
+        return node != nullptr && node->kind == Node::Kind::table;
+    };
     const auto section = [&](const std::string& name) {
         const Node* node = root.find(name);
-        const bool is_there = node != nullptr && node->kind == Node::Kind::table;
-        if (node != nullptr && !is_there) {
+        if (node != nullptr && !is_there(name)) {
             root.mistake(name, fmt::format("{} is {}; write it as a section [{}]", name,
                                            kind_text(*node), name));
         }
-        return TableReader(is_there ? *node : absent, "[" + name + "]", reading);
+        return TableReader(is_there(name) ? *node : absent, "[" + name + "]", reading);
     };
     TableReader mesh = section("mesh"), material = section("material"), mold = section("mold"),
                 skin = section("skin"), render = section("render"), output = section("output");
     BodySpec& work_piece = scene.body.emplace_back();
     read_mesh_section(mesh, folder, work_piece);
-    read_material(material, assets, folder, work_piece.material, work_piece.look, scene.inputs);
+    read_material(material, assets, folder, work_piece.material, work_piece.look, scene.inputs,
+                  is_there("material"));
     work_piece.gives_look = material.find("look") != nullptr;
     refuse_look(mesh, work_piece);
     work_piece.gives_damping =
         work_piece.material.damping_ratio > 0 && material.find("damping_ratio");
+    // Theirs, too, is of what the scene gives itself.
     for (const Node* node : root.tables("inset", "[[inset]]")) {
         TableReader inset(*node, "[[inset]]", reading);
         work_piece.inset.push_back(read_inset(inset, assets, folder, scene.inputs));
+        work_piece.gives_damping =
+            work_piece.gives_damping || (work_piece.inset.back().material.damping_ratio > 0 &&
+                                         inset.find("damping_ratio") != nullptr);
     }
     read_mold(mold, work_piece);
     BodyReader bodies(reading, assets, folder);

@@ -72,6 +72,12 @@ bool is_stage_key(const std::string& key) {
     return std::find(kStageKeys.begin(), kStageKeys.end(), key) != kStageKeys.end();
 }
 
+std::string usual_stage_name(std::size_t number, const std::string& machine) {
+    return fmt::format(
+        "{}-{}", number,
+        is_path(machine) ? fs::path(machine).lexically_normal().stem().string() : machine);
+}
+
 std::optional<std::string> why_no_file_name(const std::string& text) {
     constexpr std::size_t kLongest = 100;
     if (text.empty()) return "is empty";
@@ -197,11 +203,11 @@ void StageReader::read_loads(TableReader& table, StageSpec& stage) {
     for (const GripSpec& grip : stage.machine.grip) parts.insert(grip.name);
     for (const BladeSpec& blade : stage.machine.blade) parts.insert(blade.name);
     for (const LoadSpec& load : stage.machine.load) parts.insert(load.name);
-    int number = 0;
+    std::size_t number = 0;
     for (const Node* node : table.tables("load", "[[stage.load]]")) {
         TableReader one(*node, "[[stage.load]]", reading_);
         LoadSpec load;
-        load.name = fmt::format("load_{}", ++number);
+        load.name = usual_load_name(++number);
         if (one.find("name") != nullptr) {
             load.name = read_part_name(one, parts);
         } else if (!parts.insert(load.name).second) {
@@ -233,8 +239,10 @@ void read_frame_words(TableReader& table, WorldAxis& axis, WorldAxis& up) {
     }
 }
 
-void StageReader::name_stage(TableReader& table, const std::string& machine, StageSpec& stage) {
-    stage.name = fmt::format("{}-{}", count_, machine);
+void StageReader::name_stage(TableReader& table, StageSpec& stage) {
+    const Node* machine = table.find("machine");
+    const bool has_machine = machine != nullptr && machine->kind == Node::Kind::text;
+    stage.name = usual_stage_name(count_, has_machine ? machine->text : "");
     const bool is_named = table.text("name", stage.name);
     if (const auto reason = why_no_file_name(stage.name); is_named && reason) {
         table.mistake("name", fmt::format("the name {}; it is used in file names", *reason));
@@ -256,7 +264,7 @@ StageSpec StageReader::read(const Node& node) {
     const Loaded* loaded = find_machine(table, machine);
     const Node* named = table.find("machine");
     stage.place = named != nullptr ? named->place : table.place();
-    name_stage(table, machine, stage);
+    name_stage(table, stage);
     if (table.whole("frames", 1, kMostFrames, stage.frames)) {
         frames_ += stage.frames;
         if (frames_ - stage.frames <= kMostFrames && frames_ > kMostFrames) {

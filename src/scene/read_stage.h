@@ -38,7 +38,7 @@ class StageReader {
     bool read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage);
     void repeat_parts(TableReader& table, const Loaded& loaded, StageSpec& stage);
     void read_loads(TableReader& table, StageSpec& stage);
-    void name_stage(TableReader& table, const std::string& machine, StageSpec& stage);
+    void name_stage(TableReader& table, StageSpec& stage);
 
     Reading& reading_;
     std::filesystem::path scene_folder_;
@@ -48,12 +48,15 @@ class StageReader {
     std::map<std::filesystem::path, Loaded> loaded_;
     std::map<std::string, int> line_of_name_;
     std::vector<std::filesystem::path> inputs_;
-    int count_ = 0;
+    std::size_t count_ = 0;
     double frames_ = 0;  // of all stages so far
 };
 
 // Whether a text can be the name of a file or folder in a run directory; else why not.
 std::optional<std::string> why_no_file_name(const std::string& text);
+
+// What a stage is called that nobody names: "1-bend". `machine`: as it says, a name or a path.
+std::string usual_stage_name(std::size_t number, const std::string& machine);
 
 // The keys axis and up, of a stage and of a machine.
 void read_frame_words(TableReader& table, WorldAxis& axis, WorldAxis& up);
