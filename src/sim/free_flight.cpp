@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/elasticity_of.h"
 #include "sim/tool_entry.h"
 #include "sim/vector_sums.h"
 
@@ -78,8 +79,8 @@ double rounding_energy(const Aggregate& matter, double step) {
 double elastic_rounding(const Aggregate& matter) {
     double modulus = 0;  // [J/kg]
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
+        if (elasticity_of(matter, n) == Elasticity::hencky) continue;
         const Material& material = matter.material_at(n);
-        if (material.elasticity == Elasticity::hencky) continue;
         modulus = std::max(modulus, material.young_modulus / material.density);
     }
     return std::numeric_limits<double>::epsilon() * modulus * matter.mass();

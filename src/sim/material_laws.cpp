@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "laws/layer_guard.h"
+#include "sim/elasticity_of.h"
 
 namespace swage {
 
@@ -16,11 +17,11 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
         std::ranges::none_of(matter.cell_fill, [](float fill) { return fill > kThinFill; });
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
         const Material& m = matter.material_at(n);
-        const bool foam = cells && m.elasticity == Elasticity::storakers;
-        CellKind kind = m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
-                        : foam                                  ? CellKind::foam
-                        : std::isfinite(m.yield_stress)         ? CellKind::yielding
-                                                                : CellKind::elastic;
+        const Elasticity elasticity = elasticity_of(matter, n);
+        CellKind kind = elasticity == Elasticity::neo_hookean ? CellKind::rubber
+                        : elasticity == Elasticity::storakers ? CellKind::foam
+                        : std::isfinite(m.yield_stress)       ? CellKind::yielding
+                                                              : CellKind::elastic;
         const bool yields = kind == CellKind::yielding, flows = yields && flow == Flow::trial;
         const bool shifts = cells && flows && m.shifts();
         if (shifts) kind = CellKind::kinematic;

@@ -7,6 +7,7 @@
 
 #include "base/portable_math.h"
 #include "sim/crushed_cells.h"
+#include "sim/elasticity_of.h"
 #include "sim/free_flight.h"
 #include "sim/lane_memory.h"
 #include "sim/vector_clones.h"
@@ -111,7 +112,7 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       saves_branches_(settings.solver == Solver::energy_stepped),
       flies_(only_gravity_acts(apparatus, settings)) {
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
-        stiffens_ = stiffens_ || matter.material_at(n).elasticity == Elasticity::storakers;
+        stiffens_ = stiffens_ || elasticity_of(matter, n) == Elasticity::storakers;
     }
     if (implicit_) let_go();
 }
