@@ -40,6 +40,10 @@ TEST_CASE("a quantity has the value of its unit, however it is spelled") {
         {"+2 m", Quantity::length, 2},
         {".5 mm", Quantity::length, 0.0005},
         {"2.5e1 \u00b5m", Quantity::length, 25e-6},
+        {"3 \u00b5s", Quantity::time, 3e-6},
+        {"3 \u03bcs", Quantity::time, 3e-6},
+        {"3 \u00b5m/s", Quantity::speed, 3e-6},
+        {"3 \u03bcm/s", Quantity::speed, 3e-6},
         {"0.25", Quantity::length, 0.25},
         {"010", Quantity::number, 10},
         {"-0", Quantity::number, 0},
@@ -203,10 +207,11 @@ double by_its_parts(std::string name, Quantity quantity) {
                                                   {'c', 1e-2}, {'d', 1e-1}, {'k', 1e3},
                                                   {'M', 1e6},  {'G', 1e9}};
     static const std::map<std::string, std::string> kOtherName = {
-        {"inches", "in"},   {"feet", "ft"},    {"degrees", "deg"},  {"\u00b0", "deg"},
-        {"\u00b5m", "um"},  {"\u03bcm", "um"}, {"psi", "lbf/in2"},  {"ksi", "kip/in2"},
-        {"psf", "lbf/ft2"}, {"mph", "mile/h"}, {"rpm", "turn/min"}, {"Nm", "N m"},
-        {"kNm", "kN m"},    {"Nmm", "N mm"},   {"turns", "turn"},   {"turns/s", "turn/s"}};
+        {"inches", "in"},      {"feet", "ft"},        {"degrees", "deg"},  {"\u00b0", "deg"},
+        {"\u00b5m", "um"},     {"\u03bcm", "um"},     {"\u00b5s", "us"},   {"\u03bcs", "us"},
+        {"\u00b5m/s", "um/s"}, {"\u03bcm/s", "um/s"}, {"psi", "lbf/in2"},  {"ksi", "kip/in2"},
+        {"psf", "lbf/ft2"},    {"mph", "mile/h"},     {"rpm", "turn/min"}, {"Nm", "N m"},
+        {"kNm", "kN m"},       {"Nmm", "N mm"},       {"turns", "turn"},   {"turns/s", "turn/s"}};
     const auto value_of = [](const std::string& part) {
         const auto known = kPart.find(part);
         return known != kPart.end() ? known->second : kTimes.at(part[0]) * kPart.at(part.substr(1));
