@@ -267,10 +267,12 @@ Json stages_json(const SceneSpec& scene, const RunCost& cost) {
     return stages;
 }
 
-std::optional<Error> refusal_of(const SceneSpec& scene, const RunCost& cost,
-                                const RunOptions& options) {
+// As `run` refuses, by sizes alone, or what is known of it better.
+std::optional<Error> refusal_of(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                                const RunCost& counted, const RunOptions& options) {
     try {
-        refuse_excess(cost, options);
+        refuse_excess(estimate_cost(scene, input, options), options);
+        refuse_excess(counted, options);
         const RenderSettings& render = scene.render;
         if (std::max(render.width, render.height) > kAnyDraws) check_drawing(render);
     } catch (const Error& error) {
@@ -322,7 +324,7 @@ int check(const CheckArguments& given) {
     try {
         const std::vector<InputMesh> input = read_input_meshes(*reading.scene);
         const RunCost cost = count_cost(*reading.scene, input, options);
-        const std::optional<Error> refusal = refusal_of(*reading.scene, cost, options);
+        const std::optional<Error> refusal = refusal_of(*reading.scene, input, cost, options);
         for (const InputMesh& one : input) json["meshes"].push_back(mesh_json(one));
         json["cost"] = with_whole_counts(cost_json(cost));
         json["stages"] = stages_json(*reading.scene, cost);

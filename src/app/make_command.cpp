@@ -54,7 +54,7 @@ void write_shape(const fs::path& file, MadeShape shape) {
     if (shape.texture && !shape.mesh.material.empty()) {
         const fs::path folder = fs::absolute(file).parent_path();
         shape.mesh.material[0].texture =
-            folder / picture.add(folder, file.stem().string() + ".png",
+            folder / picture.add(folder, plain_name(file.stem().string(), "texture") + ".png",
                                  encode_png({shape.texture->width, shape.texture->height,
                                              shape.texture->rgb}));
     }

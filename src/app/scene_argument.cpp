@@ -43,7 +43,10 @@ void add_scene_argument(CLI::App& command, SceneArgument& argument) {
         ->type_name("SCENE");
     command
         .add_option("--set", argument.overrides,
-                    "override a value of the scene, such as \"stage.1.angle=45 deg\"")
+                    "override a value of the scene, such as \"stage.1.angle=45 deg\"; of several "
+                    "stages, bodies and the like, by number in the scene file (body.1 is its first "
+                    "[[body]]), by name (body.body-2 is the same if it has none), by machine, or * "
+                    "for all")
         ->type_name("KEY=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

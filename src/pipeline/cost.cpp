@@ -10,6 +10,7 @@
 #include "base/portable_math.h"
 #include "base/text.h"
 #include "base/whole.h"
+#include "laws/spring_moduli.h"
 #include "machines/legs.h"
 #include "mold/prepare.h"
 #include "pipeline/accuracy.h"
@@ -57,7 +58,8 @@ constexpr double kStepsPerCrossing = 2.1;
 double lattice_steps_per_second(const BodySpec& body, double spacing, const SimSettings& sim) {
     double wave_speed = 0;
     for (const Material* m : body.materials()) {
-        const double nu = m->poisson_ratio;
+        const bool springs = body.material.mechanics == Mechanics::springs;
+        const double nu = springs ? kPoissonOfSprings : m->poisson_ratio;
         const double modulus = m->young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
         wave_speed = std::max(wave_speed, std::sqrt(modulus / m->density));
     }
@@ -223,6 +225,7 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     const MemoryBytes memory = memory_bytes(scene, input, share, stills > 0);
     cost.memory_bytes = memory.about;
     cost.most_memory_bytes = memory.most;
+    cost.less_memory = memory.less;
     const DiskShare disk = {double(cost.frames),    stills,
                             cost.mold.active_cells, cost.mold.particles,
                             cost.mold.bytes,        vertices,
@@ -448,10 +451,11 @@ void refuse_excess(const RunCost& cost, const RunOptions& options) {
     if (options.insist) return;
     const double memory = free_memory(), disk = free_disk(fs::absolute(options.out));
     if (cost.memory_bytes > memory) {
-        fail(ExitCode::resources,
-             "the run would need about {} of memory, and {} is free: a larger [mold] spacing needs "
-             "less (--force runs it anyway)",
-             bytes_text(cost.memory_bytes), bytes_text(memory));
+        fail(
+            ExitCode::resources,
+            "the run would need about {} of memory, and {} is free: {} needs less (--force runs it "
+            "anyway)",
+            bytes_text(cost.memory_bytes), bytes_text(memory), cost.less_memory);
     }
     const double addresses = cost.memory_bytes + kThreadAddresses * thread_count() +
                              (options.draw ? kDrawingAddresses : 0);

@@ -85,4 +85,9 @@ Json start_json(const StartSpec& start) {
             {"spin_rad_s", vector_json(start.spin)}};
 }
 
+Json inset_json(const InsetSpec& inset) {
+    if (!inset.file.empty()) return {{"file", inset.file.string()}};
+    return {{"from", vector_json(inset.from)}, {"to", vector_json(inset.to)}};
+}
+
 }  // namespace swage

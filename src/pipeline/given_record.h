@@ -20,5 +20,7 @@ Json mold_json(const MoldSettings& settings);
 Json skin_json(const SkinSettings& settings);
 // `at_m`: null where its file says it.
 Json start_json(const StartSpec& start);
+// A box in shares of the work-piece's, or a file.
+Json inset_json(const InsetSpec& inset);
 
 }  // namespace swage

@@ -39,6 +39,30 @@ constexpr double kFace = 2700, kTouchingFace = 2500;
 constexpr double kDrawing = 117e6, kPixel = 60;
 constexpr double kDrawnVertex = 500;
 
+constexpr const char* kLargerCells = "a larger [mold] spacing";
+
+// What can be changed, and what it takes [byte].
+struct MemoryPart {
+    const char* less;
+    double bytes;
+};
+
+const MemoryPart& largest(const std::vector<MemoryPart>& parts) {
+    return *std::max_element(
+        parts.begin(), parts.end(),
+        [](const MemoryPart& a, const MemoryPart& b) { return a.bytes < b.bytes; });
+}
+
+// Of skins, whose vertices are those of meshes, or as many as cells ask for.
+const char* fewer_vertices(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                           double vertices) {
+    double given = 0;
+    for (const InputMesh& one : input) given += static_cast<double>(one.mesh.position.size());
+    return scene.skin.kind != SkinKind::boundary && given > 0.5 * vertices
+               ? "a mesh of fewer triangles"
+               : kLargerCells;
+}
+
 }  // namespace
 
 MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
@@ -67,17 +91,34 @@ MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& i
                              of.vertices * vertex + of.carried_vertices * kCarriedVertex + of.way +
                              kKept;
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
-    const auto peak = [&](double broken, double vertices) {
-        const double drawn = draws ? kDrawing + kPixel * pixels + vertices * kDrawnVertex : 0;
-        return held + std::max({read, simulated + broken, drawn});
+    const auto drawn = [&](double vertices) {
+        return draws ? kDrawing + kPixel * pixels + vertices * kDrawnVertex : 0;
     };
-    if (!scene.breaks()) return {peak(0, of.vertices), peak(0, of.vertices)};
+    const auto peak = [&](double broken, double vertices) {
+        return held + std::max({read, simulated + broken, drawn(vertices)});
+    };
+    const char* of_skins = fewer_vertices(scene, input, of.vertices);
+    const auto less = [&](double broken) {
+        const double skins = of.vertices * vertex;
+        if (drawn(of.vertices) > std::max(read, simulated + broken)) {
+            return largest({{"a smaller [render] size", kPixel * pixels},
+                            {of_skins, of.vertices * kDrawnVertex}})
+                .less;
+        }
+        if (read > simulated + broken) return "a mesh of fewer triangles";
+        return largest({{kLargerCells, simulated + broken - skins - of.way},
+                        {of_skins, skins},
+                        {"fewer frames", of.way}})
+            .less;
+    };
+    if (!scene.breaks()) return {peak(0, of.vertices), peak(0, of.vertices), less(0)};
     const bool is_boundary = scene.skin.kind == SkinKind::boundary;
     const double rubble = broken_vertices(scene, of.particles, of.vertices, of.faces),
                  about = of.cells * kBroken,
                  most = of.particles * kRubble +
                         rubble * (is_boundary ? kBoundaryVertex : kRubbleVertex);
-    return {peak(about, of.vertices), peak(std::max(about, most), of.vertices + rubble)};
+    return {peak(about, of.vertices), peak(std::max(about, most), of.vertices + rubble),
+            less(about)};
 }
 
 }  // namespace swage

@@ -3,6 +3,7 @@
 // `swage run` had resident; tests/verify/COSTS.md has a table of what was told and what came.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "pipeline/work_piece.h"
@@ -23,7 +24,8 @@ struct MemoryShare {
 
 struct MemoryBytes {
     double about = 0;
-    double most = 0;  // where all that may break is broken to its particles; else the same
+    double most = 0;        // where all that may break is broken to its particles; else the same
+    std::string less = {};  // what would take off the most of it: "a larger [mold] spacing"
 };
 
 // `draws`: stills too, once it is simulated.

@@ -115,11 +115,14 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
         const BodySpec& body = scene.body[b];
         Json materials = Json::array();  // the body's own first, then those of its insets
         for (const Material* one : body.materials()) materials.push_back(material_json(*one));
+        Json insets = Json::array();  // where they are
+        for (const InsetSpec& one : body.inset) insets.push_back(inset_json(one));
         record["bodies"].push_back({{"name", body.name},
                                     {"mesh", mesh_json(input[b])},
                                     {"mold", mold_json(body.mold)},
                                     {"start", start_json(body.start)},
-                                    {"materials", materials}});
+                                    {"materials", materials},
+                                    {"insets", insets}});
     }
     record["skin"] = skin_json(scene.skin);
     record["render"] = render_json(scene.render);

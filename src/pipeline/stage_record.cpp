@@ -100,6 +100,7 @@ int piece_count(const std::vector<WorkPiece>& bodies) {
 Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap,
                   const std::vector<std::string>& warnings) {
     const StageTotals& totals = end.totals;
+    const Expression& strength = end.machine.spec.gravity_strength;  // of gravity; null: 1
     const FrameReport& last = end.last;
     Json probes = Json::object();
     for (const ProbePlace& probe : end.probes) {
@@ -115,6 +116,7 @@ Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap
         {"parameters", parameters_json(end.machine)},
         {"axes", axes_json(end.machine.frame)},
         {"loads", loads_json(end.machine)},
+        {"gravity_strength", strength.empty() ? Json(nullptr) : Json(strength.text)},
         {"frames", {end.first_frame, end.last_frame}},
         {"legs", end.legs},
         {"duration_s", end.stage.duration},

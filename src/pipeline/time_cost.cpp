@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/portable_math.h"
+#include "laws/spring_moduli.h"
 
 namespace swage {
 
@@ -109,7 +110,7 @@ double most_iterations(const SceneSpec& scene, const WorkLoad& load) {
     for (const BodySpec& body : scene.body) {
         const bool has_cells = body.material.mechanics == Mechanics::cells;
         for (const Material* m : body.materials()) {
-            const double nu = has_cells ? m->poisson_ratio : 0.25;
+            const double nu = has_cells ? m->poisson_ratio : kPoissonOfSprings;
             fastest = std::max(fastest, wave_modulus(nu) / wave_modulus(kUsualPoissonRatio));
         }
     }

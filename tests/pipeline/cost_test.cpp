@@ -398,6 +398,48 @@ TEST_CASE("what a process has taken already is not free for its run") {
     ::setrlimit(RLIMIT_AS, &before);
 }
 
+TEST_CASE("springs are told the same steps, whatever Poisson's ratio their material has") {
+    BarScene bar(6);
+    bar.scene.stage[0].sim.solver = Solver::explicit_steps;
+    Material& material = bar.scene.body[0].material;
+    const auto steps = [&](Mechanics mechanics, double poisson_ratio) {
+        material.mechanics = mechanics, material.poisson_ratio = poisson_ratio;
+        return bar.cost().steps.least;
+    };
+    CHECK(steps(Mechanics::springs, 0.49) == steps(Mechanics::springs, 0.25));
+    CHECK(steps(Mechanics::springs, 0.49) == steps(Mechanics::cells, 0.25));
+    CHECK(steps(Mechanics::cells, 0.49) > 3 * steps(Mechanics::cells, 0.25));
+}
+
+TEST_CASE("a run that lacks memory is told to take less of what takes it") {
+    RunOptions options;
+    options.out = ".";
+    const auto advice = [&](const BarScene& bar, bool draws) {
+        options.draw = draws;
+        RunCost cost = estimate_cost(bar.scene, {bar.input}, options);
+        cost.memory_bytes = 1e30;
+        try {
+            refuse_excess(cost, options);
+        } catch (const Error& error) {
+            const std::string said = error.what();
+            const std::size_t from = said.find(" is free: "), to = said.find(" needs less (");
+            REQUIRE(to != std::string::npos);
+            return said.substr(from + 10, to - from - 10);
+        }
+        return std::string("nothing");
+    };
+    CHECK(advice(BarScene(40), true) == "a larger [mold] spacing");
+    BarScene bar(2);
+    bar.scene.render.width = bar.scene.render.height = 16384;
+    CHECK(advice(bar, true) == "a smaller [render] size");
+    CHECK(advice(bar, false) == "a larger [mold] spacing");
+    bar.scene.stage[0].frames = 100'000'000;
+    CHECK(advice(bar, false) == "fewer frames");
+    BarScene ball(2);
+    ball.input.mesh = make_shape("sphere", {{"division", 200}}).mesh;
+    CHECK(advice(ball, false) == "a mesh of fewer triangles");
+}
+
 // Of a ball of glass that was broken to its particles, 613 of them, on its rough faces.
 TEST_CASE("the most disk that is told holds the meshes of a body in crumbs, the least does not") {
     InputMesh ball;
