@@ -15,6 +15,7 @@
 #include "machines/start_notes.h"
 #include "machines/told_at.h"
 #include "machines/touch.h"
+#include "matter/carriage_of_held.h"
 #include "matter/touch_points.h"
 
 namespace swage {
@@ -208,13 +209,14 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
               const GripSpec& spec, std::vector<Box>& regions) {
     constexpr double kLeastShare = 0.01, kOverlap = 1e-3;  // of a patch
     const Box region = box_between(setting, spec.from, spec.to);
-    const Mat3 work_from_world =
-        setting.frame.world_from_work.rotation.conjugate().toRotationMatrix();
+    const Pose work_from_world = setting.frame.world_from_work.inverse();
+    const Mat3 turn = work_from_world.rotation.toRotationMatrix();
     Grip grip;
     grip.name = spec.name;
     Box jaws;
     for (std::size_t p = 0; p < setting.point.size(); ++p) {
-        const Box patch = patch_box(matter, work_from_world, p, setting.point[p]);
+        const Vec3 at = work_from_world * position_of_held(matter, p);
+        const Box patch = patch_box(matter, turn, p, at);
         const double share = share_within(patch, region);
         if (share < kLeastShare) continue;
         for (std::size_t g = 0; g < regions.size(); ++g) {
@@ -227,6 +229,7 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
                             machine.apparatus.grip[g].name, spec.name));
         }
         grip.point.push_back(static_cast<int>(p));
+        grip.anchor.push_back(at);
         grip.share.push_back(share);
         jaws.grow(patch.low.cwiseMax(region.low));
         jaws.grow(patch.high.cwiseMin(region.high));
@@ -239,7 +242,7 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
     }
     const Vec3 center = jaws.center();
     const Pose work_from_grip{Quat::Identity(), center};
-    for (int p : grip.point) grip.anchor.push_back(setting.point[p] - center);
+    for (Vec3& anchor : grip.anchor) anchor -= center;
     for (int axis = 0; axis < 3; ++axis) grip.hold[axis] = spec.along[axis];
     if (spec.drawn) {
         grip.jaw = clamp_around({jaws.low - center, jaws.high - center},

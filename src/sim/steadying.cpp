@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/principal_axes.h"
-#include "matter/point_side.h"
+#include "matter/carriage_of_held.h"
 #include "sim/piece_sums.h"
 
 namespace swage {
@@ -84,7 +84,7 @@ std::vector<LeftFree> left_free(const Aggregate& matter, const Apparatus& appara
             if (gripped.at[g][i] == GrippedPieces::kNone) continue;
             const auto n = std::size_t(gripped.at[g][i]);
             ++barred[n];
-            const Vec3 r = position_on_side(matter, std::size_t(grip.point[i])) - center[n];
+            const Vec3 r = position_of_held(matter, std::size_t(grip.point[i])) - center[n];
             for (int axis = 0; axis < 3; ++axis) {
                 Vec6 way;
                 way << axes.col(axis), r.cross(axes.col(axis)) / reach[n];

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "matter/carriage_of_held.h"
 #include "matter/parted.h"
 
 namespace swage {
@@ -114,7 +115,10 @@ std::vector<PointCarriage> pressed_bearers(const Load& load, const Aggregate& ma
 std::vector<PointCarriage> holders(const Grip& grip, const Aggregate& matter) {
     const std::vector<char> torn = find_torn(grip, matter);
     if (torn.empty()) return {};
-    std::vector<PointCarriage> holder = on_sides(grip, matter, torn);
+    std::vector<PointCarriage> holder(torn.size());
+    parallel_each(torn.size(), kChunk, [&](std::size_t n) {
+        holder[n] = carriage_of_held(matter, std::size_t(grip.point[n]));
+    });
     for_each_rest(grip, matter, torn, holder, [&](std::size_t n, const Pieces& pieces, int piece) {
         if (piece_of(holder[n], pieces) != piece) holder[n].is_whole = false;
     });
