@@ -159,18 +159,27 @@ class FramedSkin {
 };
 
 // Where the bodies are in each frame, for a camera that goes along: the middle of what is framed,
-// as a mean over three windows, which is nearly one weighted by a bell.
+// as a mean over three windows, which is nearly one weighted by a bell. Beyond its ends the way
+// goes on mirrored in them, so that what flies evenly is gone along with all the time, and the
+// bell is no longer than the film.
 std::vector<Vec3> calm_way(const std::vector<Box>& skin, double calm) {
+    constexpr int kPasses = 3;
     std::vector<Vec3> way;
     for (const Box& box : skin) {
         way.push_back(!box.empty() ? box.center() : way.empty() ? Vec3(0, 0, 0) : way.back());
     }
-    const int reach = static_cast<int>(std::lround(calm)), last = static_cast<int>(way.size()) - 1;
-    for (int pass = 0; pass < 3; ++pass) {
+    const int last = static_cast<int>(way.size()) - 1;
+    const int reach = std::min(static_cast<int>(std::lround(calm)), last / (2 * kPasses));
+    for (int pass = 0; pass < kPasses; ++pass) {
         const std::vector<Vec3> before = way;
+        const auto at = [&](int n) -> Vec3 {
+            if (n < 0) return 2 * before.front() - before[-n];
+            if (n > last) return 2 * before.back() - before[2 * last - n];
+            return before[n];
+        };
         for (int f = 0; f <= last; ++f) {
             way[f].setZero();
-            for (int n = f - reach; n <= f + reach; ++n) way[f] += before[std::clamp(n, 0, last)];
+            for (int n = f - reach; n <= f + reach; ++n) way[f] += at(n);
             way[f] /= 2 * reach + 1;
         }
     }
