@@ -68,8 +68,7 @@ class StageRun {
           overlaps_before_(overlaps_of(bodies, stage.sim)),
           machine_(stage_machine(stage, bodies.front().matter, materials_beside(named(bodies)),
                                  box_of(bodies.front().position))),
-          told_deep_(moves_as_molded() ? start_deep(machine_, named(bodies), overlaps_before_)
-                                       : std::vector<char>(bodies.size(), 0)),
+          told_deep_(start_deep(machine_, named(bodies), overlaps_before_, moves_as_molded())),
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
           way_(stage, machine_, bodies.front().matter),
           limits_(stage, machine_),

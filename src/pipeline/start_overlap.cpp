@@ -30,6 +30,14 @@ constexpr double kDeep = 0.25;
 // What touches as it is molded is not as deep, however its mesh is rounded [spacings].
 constexpr double kTouches = 0.05;
 
+// Of which bodies it is told that they start in tools, and from which depth on [spacings].
+struct TellingOfTools {
+    explicit TellingOfTools(bool to_move_as_molded)
+        : first(to_move_as_molded ? 0 : 1), deep(to_move_as_molded ? kTouches : kDeep) {}
+    std::size_t first;
+    double deep;
+};
+
 struct MatterCells {
     std::vector<Vec3> middle, centroid;  // of each cell, of what of it is matter [m]
 };
@@ -233,7 +241,8 @@ std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies) 
 std::vector<std::string> tool_overlaps(const Machine& machine,
                                        const std::vector<NamedMatter>& bodies,
                                        bool to_move_as_molded) {
-    const std::size_t first = to_move_as_molded ? 0 : 1;
+    const TellingOfTools telling(to_move_as_molded);
+    const std::size_t first = telling.first;
     std::vector<std::string> told;
     if (bodies.size() <= first || machine.apparatus.tool.empty()) return told;
     const std::vector<Pose> world_from_tool = drive_at(machine, 0, 1).world_from_tool;
@@ -245,8 +254,7 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
     std::vector<Worst> deep(world_from_tool.size());
     std::map<std::pair<std::size_t, std::string>, Worst> astray;
     for (std::size_t b = first; b < bodies.size(); ++b) {
-        const double least =
-            (to_move_as_molded ? kTouches : kDeep) * bodies[b].matter->lattice.spacing;
+        const double least = telling.deep * bodies[b].matter->lattice.spacing;
         const std::vector<Vec3> points = touching_points(*bodies[b].matter);
         const Vec3 middle = box_of(points).center();
         for (std::size_t n = 0; n < world_from_tool.size(); ++n) {
@@ -284,20 +292,21 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
 }
 
 std::vector<char> start_deep(const Machine& machine, const std::vector<NamedMatter>& bodies,
-                             const std::vector<double>& overlaps) {
+                             const std::vector<double>& overlaps, bool to_move_as_molded) {
+    const TellingOfTools telling(to_move_as_molded);
     const std::vector<Pose> world_from_tool = drive_at(machine, 0, 1).world_from_tool;
     const Vec3 work_piece = machine.frame.world_from_work.translation;
     std::vector<char> deep(bodies.size(), 0);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (std::size_t b = telling.first; b < bodies.size(); ++b) {
         const std::vector<Vec3> points = touching_points(*bodies[b].matter);
         const Vec3 middle = box_of(points).center();
-        double deepest = overlaps[b];
+        double deepest = to_move_as_molded ? overlaps[b] : 0;
         for (std::size_t n = 0; n < world_from_tool.size(); ++n) {
             deepest = std::max(deepest, standing_at(machine.apparatus.tool[n], world_from_tool[n],
                                                     work_piece, middle, points)
                                             .deep);
         }
-        deep[b] = deepest > kTouches * bodies[b].matter->lattice.spacing;
+        deep[b] = deepest > telling.deep * bodies[b].matter->lattice.spacing;
     }
     return deep;
 }

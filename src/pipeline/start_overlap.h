@@ -23,9 +23,9 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
                                        const std::vector<NamedMatter>& bodies,
                                        bool to_move_as_molded = false);
 
-// Of bodies as they were molded, and to move: which of them these sentences tell of as deep, given
-// how deep contact finds each in others [m].
+// Which of the bodies these sentences tell of as deep. As they were molded, and to move, also those
+// that start_overlaps() tells of, given how deep contact finds each in others [m].
 std::vector<char> start_deep(const Machine& machine, const std::vector<NamedMatter>& bodies,
-                             const std::vector<double>& overlaps);
+                             const std::vector<double>& overlaps, bool to_move_as_molded);
 
 }  // namespace swage

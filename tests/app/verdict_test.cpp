@@ -296,6 +296,17 @@ TEST_CASE("what starts pressed into the floor, or another body, is said to be th
     CHECK(!says(beside("[0.2, 0, 0]"), thrown));
     CHECK(!says(beside("[0.0, 0.02, 0]"), thrown));
     CHECK(!says(beside("[0.2, -0.00001, 0]"), thrown));
+    // In a later stage, too.
+    const std::string later =
+        told_of(kBar,
+                "[[body]]\nname = \"other\"\nfile = \"body.obj\"\nacross = 2\n"
+                "at = [0.2, -0.005, 0]\n"
+                "[[stage]]\nmachine = \"floor\"\ndrop = 0.01\nframes = 2\nduration = \"1 ms\"\n"
+                "[[stage]]\nmachine = \"floor\"\ndrop = 0\nframes = 2\nduration = \"1 ms\"\n"
+                "gravity = 9.81\n");
+    INFO(later);
+    CHECK(says(later, "2-floor: \"other\" starts 5 mm deep in tool floor"));
+    CHECK(!says(later, thrown));
 }
 
 TEST_CASE("what was pressed and came back is not said to have made energy by what little is left") {
