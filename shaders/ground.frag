@@ -15,8 +15,9 @@ void main() {
     vec2 seen = visibility_at(gl_FragCoord.xy, depth, up);
     vec3 share = (KEY * max(key.y, 0.0) * seen.y + ambient(up) * seen.x) / open_light();
     float near = 1.0 - smoothstep(ground.y, ground.z, length(position.xz));
-    vec3 floor_light = paper_floor(position, gl_FragCoord.xy, share, near);
+    vec3 floor_light = paper_floor(position, gl_FragCoord.xy, share, near, ground.z);
     pixel_color = ground.w > 0.0
-                      ? caught(paper_floor(position, gl_FragCoord.xy, vec3(1.0), near), floor_light)
+                      ? caught(paper_floor(position, gl_FragCoord.xy, vec3(1.0), near, ground.z),
+                               floor_light)
                       : developed(floor_light, gl_FragCoord.xy);
 }

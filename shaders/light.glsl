@@ -90,10 +90,12 @@ vec3 surroundings(vec3 position, vec3 ray, vec3 wall, float spread2) {
     return light;
 }
 
-// The backdrop where it lies as a floor, with `share` of its light, lighter about the middle.
-vec3 paper_floor(vec3 position, vec2 pixel, vec3 share, float near) {
+// The backdrop where it lies as a floor, with `share` of its light, lighter about the middle as
+// far as it is `wide` enough not to end there, as a disc would.
+vec3 paper_floor(vec3 position, vec2 pixel, vec3 share, float near, float wide) {
     vec3 light = backdrop(sight(pixel), pixel) * mix(vec3(1.0), share, near);
-    return light * (1.0 + 0.22 * exp(-0.30 * dot(position.xz, position.xz)) * near);
+    float lighter = 0.22 * smoothstep(0.0, 3.0, wide);  // of which little is left as far as that
+    return light * (1.0 + lighter * exp(-0.30 * dot(position.xz, position.xz)) * near);
 }
 
 // What a level floor has of light that nothing keeps from it.

@@ -76,10 +76,11 @@ void main() {
         float near = 1.0 - max(out_of_action, to_its_edge);
         vec3 share = (KEY * nl * seen.y + ambient(n) * seen.x) / open_light();
         vec3 paper = base / PAPER;
-        vec3 floor_light = paper_floor(position, gl_FragCoord.xy, share * paper, near);
+        float wide = endless.w;
+        vec3 floor_light = paper_floor(position, gl_FragCoord.xy, share * paper, near, wide);
         pixel_color =
             ground.w > 0.0
-                ? caught(paper_floor(position, gl_FragCoord.xy, paper, near), floor_light)
+                ? caught(paper_floor(position, gl_FragCoord.xy, paper, near, wide), floor_light)
                 : developed(floor_light, gl_FragCoord.xy);
     }
 }

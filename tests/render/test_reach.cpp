@@ -76,6 +76,34 @@ TEST_CASE("a tool far away, or very long, takes no shadow from the action", "[re
     CHECK(shadow({grey(rail, {0, 0.1, 40})}) == Approx(alone).epsilon(0.1));
 }
 
+TEST_CASE("a floor without end that is small beside the action is no bright disc", "[renderer]") {
+    if (!can_draw()) return;
+    RenderSettings settings = small_picture();
+    settings.camera[0].elevation = 1.2;
+    // As the project's own floor is coloured.
+    const SurfaceMaterial paper = colored({0.52, 0.53, 0.545});
+    const auto most_lighter = [&](double side) {
+        const TriMesh slab = surface_of(BoxShape{Vec3(side, 0.05 * side, side), 0});
+        const Pose under{Quat::Identity(), {0, -0.025 * side, 0}};
+        const Image with = drawn(settings, {{&slab, nullptr, under, paper, true}});
+        settings.ground = false;
+        const Image without = drawn(settings, {});
+        settings.ground = true;
+        double most = 0;
+        for (int y = 0; y < with.height; ++y) {
+            for (int x = 0; x < with.width; ++x) {
+                most = std::max(most, brightness(with, x, y) - brightness(without, x, y));
+            }
+        }
+        return most;
+    };
+    for (const double side : {60.0, 0.6, 0.2, 0.05}) {
+        const double most = most_lighter(side);
+        CAPTURE(side, most);
+        CHECK((side > 1 ? most > 10 : most < 3));
+    }
+}
+
 TEST_CASE("from below a floor without end hides nothing, as the ground does not", "[renderer]") {
     if (!can_draw()) return;
     const TriMesh box = box_mesh(0.4), slab = surface_of(BoxShape{Vec3(60, 0.2, 60), 0});
