@@ -90,11 +90,11 @@ vec3 surroundings(vec3 position, vec3 ray, vec3 wall, float spread2) {
     return light;
 }
 
-// The backdrop where it lies as a floor, with `share` of its light, lighter about the middle as
-// far as it is `wide` enough not to end there, as a disc would.
+// The backdrop where it lies as a floor, with `share` of its light, lighter about the middle. One
+// that is less `wide` than the action would be a light disc in it.
 vec3 paper_floor(vec3 position, vec2 pixel, vec3 share, float near, float wide) {
     vec3 light = backdrop(sight(pixel), pixel) * mix(vec3(1.0), share, near);
-    float lighter = 0.22 * smoothstep(0.0, 3.0, wide);  // of which little is left as far as that
+    float lighter = 0.22 * smoothstep(0.0, 1.0, wide);
     return light * (1.0 + lighter * exp(-0.30 * dot(position.xz, position.xz)) * near);
 }
 

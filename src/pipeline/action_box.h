@@ -16,7 +16,7 @@ struct ActionBox {
     FramedAction framed;
 };
 // As drawn, with y up. `calm`: where the camera goes along with the bodies, the frames over which
-// it gathers way and slows down; 0: it stays.
+// it gathers way and slows down, fewer in a short film; 0: it stays.
 ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world,
                       double calm = 0);
 
