@@ -27,6 +27,13 @@ double longest_edge(const Aggregate& matter) {
     return longest / matter.lattice.spacing;
 }
 
+BodySpec ductile(int across, const Material& material) {
+    BodySpec body;
+    body.mold.across = across;
+    body.material = material;
+    return body;
+}
+
 }  // namespace
 
 TEST_CASE("corners that slivers alone hold go along with matter that flows far") {
@@ -34,12 +41,8 @@ TEST_CASE("corners that slivers alone hold go along with matter that flows far")
     input.mesh = make_shape("rod", {{"length", 0.2}, {"diameter", 0.06}}).mesh;
     const Quat askew(Eigen::AngleAxisd(0.7, Vec3(0.5, 0.6, 0.4).normalized()));
     for (Vec3& p : input.mesh.position) p = askew * p;
-    BodySpec body;
-    body.mold.across = 4;
-    body.material.young_modulus = 2e8;
-    body.material.poisson_ratio = 0.4;
-    body.material.density = 900;
-    body.material.yield_stress = 1.5e6;
+    const BodySpec body = ductile(
+        4, {.young_modulus = 2e8, .poisson_ratio = 0.4, .density = 900, .yield_stress = 1.5e6});
     WorkPiece piece = make_work_piece(input, body, {});
     Aggregate& matter = piece.matter;
     const Vec3 axis = askew * Vec3::UnitX();
@@ -78,12 +81,8 @@ double borne_by_tube(double wall) {
     InputMesh input;
     input.mesh =
         make_shape("tube", {{"length", 0.04}, {"diameter", kDiameter}, {"wall", wall}}).mesh;
-    BodySpec body;
-    body.mold.across = 6;
-    body.material.young_modulus = 16e9;
-    body.material.poisson_ratio = 0.44;
-    body.material.density = 11340;
-    body.material.yield_stress = 8e6;
+    const BodySpec body = ductile(
+        6, {.young_modulus = 16e9, .poisson_ratio = 0.44, .density = 11340, .yield_stress = 8e6});
     WorkPiece piece = make_work_piece(input, body, {});
     Apparatus apparatus;
     Drive from;
