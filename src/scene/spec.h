@@ -67,7 +67,7 @@ struct BodySpec {
     Material material;
     std::optional<SurfaceMaterial> look;  // of that, where anyone says
     bool gives_look = false;              // the scene does
-    bool gives_damping = false;           // its own, not what a known material has
+    bool gives_damping = false;           // the scene, of it or an inset
     std::vector<InsetSpec> inset;
     std::vector<ProbeSpec> probe;
     MoldSettings mold;

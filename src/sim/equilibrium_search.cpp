@@ -131,16 +131,6 @@ double farthest_astray(const Aggregate& matter, double gone) {
     return kAstray * (gone + kNudge * matter.lattice.spacing);
 }
 
-// The share of a motion in how far the body has gone from `start`.
-double gone_by(const Aggregate& matter, const Vec3Array& motion, const Vec3Array& start) {
-    const std::vector<double>& mass = matter.particle_mass;
-    const Vec3Array& x = matter.particle_position;
-    const double gone = chunked_sum(
-        x.size(), [&](std::size_t p) { return mass[p] * motion.at(p).dot(x.at(p) - start.at(p)); });
-    return gone / chunked_sum(x.size(),
-                              [&](std::size_t p) { return mass[p] * motion.at(p).squaredNorm(); });
-}
-
 void look_around(StaticForces& forces, const Drive& to) {
     forces.contacts.find_candidates(forces.matter, to);
     forces.self.meet_anew();

@@ -167,6 +167,17 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
     return true;
 }
 
+double gone_by(const Aggregate& matter, const Vec3Array& motion, const Vec3Array& start) {
+    const std::vector<double>& mass = matter.particle_mass;
+    const Vec3Array& x = matter.particle_position;
+    const double gone = chunked_sum(x.size(), [&](std::size_t p) {
+        return mass[p] * motion.at(p).dot(x.at(p) - start.at(p));
+    });
+    return gone / chunked_sum(x.size(), [&](std::size_t p) {
+               return mass[p] * motion.at(p).squaredNorm();
+           });
+}
+
 // The present search direction has this curvature. NOTE: far from rest, where a step has stretched
 // what is slender, that says nothing: a blade under too little to tip over gave way there, and came
 // back upright.
@@ -179,16 +190,9 @@ void Newton::give_way(const Aggregate& matter, const NewtonProblem& problem, dou
 
 bool Newton::has_gone_over(const Aggregate& matter, const Vec3Array& start) const {
     if (gave_way_.size() == 0) return false;
-    const std::vector<double>& mass = matter.particle_mass;
-    const auto along = [&](const auto& gone) {
-        return chunked_sum(mass.size(),
-                           [&](std::size_t p) { return mass[p] * gave_way_.at(p).dot(gone(p)); });
-    };
-    const Vec3Array& x = matter.particle_position;
-    const double gone = along([&](std::size_t p) -> Vec3 { return x.at(p) - start.at(p); }) /
-                        along([&](std::size_t p) -> Vec3 { return gave_way_.at(p); });
-    const double far = std::abs(gone) * longest_of(gave_way_);
-    return far > kMostly * farthest_move(x, start) && far > kLeastGone * matter.lattice.spacing;
+    const double far = std::abs(gone_by(matter, gave_way_, start)) * longest_of(gave_way_);
+    return far > kMostly * farthest_move(matter.particle_position, start) &&
+           far > kLeastGone * matter.lattice.spacing;
 }
 
 Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {

@@ -30,6 +30,9 @@ struct NewtonProblem {
     bool gives_way = false;        // as a body that has buckled does: it may go far
 };
 
+// The share of a motion, weighed by mass, in how far the body has gone from `start`.
+double gone_by(const Aggregate& matter, const Vec3Array& motion, const Vec3Array& start);
+
 class Newton {
   public:
     Newton(const Aggregate& matter, const std::vector<float>& carried_fill);
