@@ -41,8 +41,8 @@ constexpr double kPointsPerFace = 4;       // of contact
 constexpr double kParticlesForTwo = 2048;  // from which on a second core helps
 constexpr double kVerticesPerFace = 6;     // of a boundary, a cell's face: four, and its steps
 // Triangles that one becomes whose sides are halved to p, q and r parts, over (p q r)^(2/3); none
-// is smaller than as makes so many vertices of a face.
-constexpr double kDividedTriangles = 1.17, kDividedVerticesPerFace = 2.5;
+// is smaller than as makes so many vertices of a square of the longest edge.
+constexpr double kDividedTriangles = 1.17, kMostDividedVertices = 5.625;
 // Addresses beside that memory and those of threads.
 constexpr double kDrawingAddresses = 550e6;
 constexpr double kLongestRun = 30 * 86400.0;
@@ -66,11 +66,12 @@ double lattice_steps_per_second(const BodySpec& body, double spacing, const SimS
     return kStepsPerCrossing * wave_speed / spacing / sim.step_safety;
 }
 
-// Of a mesh as it is mounted, divided where its edges are long.
-double mounted_vertices(const TriMesh& mesh, bool divide, double spacing) {
+// Of a mesh as it is mounted, divided where its edges are longer than so many spacings.
+double mounted_vertices(const TriMesh& mesh, std::optional<double> longest_edge, double spacing) {
     double vertices = static_cast<double>(mesh.position.size());
-    const double longest = kLongestSkinEdge * spacing;
-    for (std::size_t t = 0; divide && t < mesh.triangle.size(); ++t) {
+    if (!longest_edge) return vertices;
+    const double longest = *longest_edge * spacing;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         const auto& [a, b, c] = mesh.triangle[t];
         const Vec3 u = mesh.position[b] - mesh.position[a], v = mesh.position[c] - mesh.position[a];
         double parts = 1;
@@ -78,7 +79,7 @@ double mounted_vertices(const TriMesh& mesh, bool divide, double spacing) {
             for (; side > longest; side /= 2) parts *= 2;
         }
         if (parts == 1) continue;
-        const double most = kDividedVerticesPerFace * 0.5 * u.cross(v).norm() / (spacing * spacing);
+        const double most = kMostDividedVertices * 0.5 * u.cross(v).norm() / (longest * longest);
         const double made = 0.5 * (kDividedTriangles * portable::pow(parts, 2. / 3) - 1);
         vertices += std::min(std::max(most, 0.5), made);
     }
@@ -95,7 +96,7 @@ void add_insets(const SceneSpec& scene, const std::vector<std::vector<TriMesh>>&
     }
     if (!carries_insets(scene, 0)) return;
     for (const TriMesh& one : insets.front()) {
-        share.carried_vertices += mounted_vertices(one, true, spacing);
+        share.carried_vertices += mounted_vertices(one, kLongestSkinEdge, spacing);
     }
 }
 
@@ -208,10 +209,11 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     }
     double vertices = 0;
     for (std::size_t b = 0; b < input.size(); ++b) {
-        vertices += scene.skin.kind == SkinKind::boundary
-                        ? kVerticesPerFace * surface_area(input[b].to_mold()) /
-                              (cost.body[b].spacing * cost.body[b].spacing)
-                        : mounted_vertices(input[b].mesh, scene.skin.divide, cost.body[b].spacing);
+        vertices +=
+            scene.skin.kind == SkinKind::boundary
+                ? kVerticesPerFace * surface_area(input[b].to_mold()) /
+                      (cost.body[b].spacing * cost.body[b].spacing)
+                : mounted_vertices(input[b].mesh, scene.skin.longest_edge, cost.body[b].spacing);
     }
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;

@@ -73,7 +73,7 @@ Json skin_json(const SkinSettings& settings) {
                        : settings.kind == SkinKind::frame4 ? "frame4"
                                                            : "mount";
     return {{"kind", kind},
-            {"divide", settings.divide},
+            {"divide", settings.longest_edge ? Json(*settings.longest_edge) : Json(false)},
             {"crease_angle_rad", settings.crease_angle},
             {"roughness", settings.roughness}};
 }

@@ -45,9 +45,8 @@ Reached molded(const SimulationContext& context, StartWarnings at_start) {
                          matter.cell_fill.size(), length_text(matter.lattice.spacing),
                          matter.particle_count(), matter.connection_count(), matter.mass())});
         divided.emplace_back();
-        if (const std::string text = division_text(bodies[b], input[b]); !text.empty()) {
-            divided.back().push_back(text);
-        }
+        const std::string text = division_text(bodies[b], input[b], context.scene.skin);
+        if (!text.empty()) divided.back().push_back(text);
         reached.matter.push_back(matter_json(matter));
     }
     const std::vector<std::string> name = body_names(context.scene);

@@ -224,9 +224,10 @@ void dress(const InputMesh& input, const BodySpec& body, const SkinSettings& ski
         piece.look = std::make_shared<const NewLook>(like);
         lay_boundary(piece);
     } else {
-        piece.skin = skin.divide
-                         ? divide_edges(input.mesh, kLongestSkinEdge * piece.matter.lattice.spacing)
-                         : input.mesh;
+        piece.skin = input.mesh;
+        if (skin.longest_edge)
+            piece.skin =
+                divide_edges(input.mesh, *skin.longest_edge * piece.matter.lattice.spacing);
         paint(piece.skin, body_look(body, input.mesh));
         color_inside(body, piece.skin);
         name_looks(piece.skin, piece.label);
@@ -261,11 +262,12 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     return piece;
 }
 
-std::string division_text(const WorkPiece& piece, const InputMesh& input) {
+std::string division_text(const WorkPiece& piece, const InputMesh& input,
+                          const SkinSettings& skin) {
     const std::size_t before = input.mesh.triangle.size(), after = piece.skin.triangle.size();
     if (piece.look || after == before) return {};
-    return fmt::format("skin: {} triangles divided into {}, with no edge longer than {} cells",
-                       before, after, kLongestSkinEdge);
+    return fmt::format("skin: {} triangles divided into {}, with no edge longer than {} cell{}",
+                       before, after, *skin.longest_edge, *skin.longest_edge == 1 ? "" : "s");
 }
 
 namespace {
@@ -316,7 +318,7 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     dress(input, as_it_stands, skin, anew);
     note_volume(piece.matter, input.to_mold(), anew.finding);
     if (carries) anew.inset = carry_insets(insets, std::move(looks), nullptr, anew.matter);
-    const std::string divided = division_text(anew, input);
+    const std::string divided = division_text(anew, input, skin);
     if (!divided.empty()) log_info("{}", divided);
     // Pressed, drawn or where its pieces lie in each other, matter takes up another volume.
     weigh(piece.matter.mass(), anew.matter);

@@ -65,7 +65,7 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
                           bool carries = false);
 
 // Empty where its skin is as its mesh came.
-std::string division_text(const WorkPiece& piece, const InputMesh& input);
+std::string division_text(const WorkPiece& piece, const InputMesh& input, const SkinSettings& skin);
 
 // Turns about the middle of the box of the mesh that it was molded from, moves and sets in motion.
 void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matter);

@@ -122,8 +122,9 @@ constexpr KeyHelp kSceneKeys[] = {
      "mount: smooth, follows half frames; frame4: follows the paper's frames of four "
      "particles; boundary: drawn around the matter's voxels, and anew when it breaks"},
     {"[skin]", "divide",
-     "halve mesh edges longer than a cell and a half, so that faces can bend; false: keep the "
-     "mesh's own vertices only; not for kind = \"boundary\""},
+     "halve mesh edges longer than this many cells, so that faces can bend (less where matter "
+     "flows "
+     "far); false: keep the mesh's own vertices only; not for kind = \"boundary\""},
     {"[skin]", "crease_angle",
      "angle between faces beyond which an edge is sharp, where the file has neither normals "
      "nor smoothing groups; 180 deg: no sharp edges; not for kind = \"boundary\"",

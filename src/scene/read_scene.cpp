@@ -43,13 +43,33 @@ Up up_of(const std::vector<StageSpec>& stages) {
     return found == Up::automatic ? Up::y : found;
 }
 
+void read_longest_edge(TableReader& table, std::optional<double>& longest) {
+    table.describe("divide",
+                   fmt::format("false, or number, {} to {}", kLeastSkinEdge, kMostSkinEdge),
+                   fmt::format("{}", kLongestSkinEdge));
+    const Node* node = table.find("divide");
+    if (node == nullptr) return;
+    if (node->kind == Node::Kind::truth) {
+        longest = node->truth ? std::optional(kLongestSkinEdge) : std::nullopt;
+    } else if (node->kind == Node::Kind::whole || node->kind == Node::Kind::real) {
+        double cells = kLongestSkinEdge;
+        table.value("divide", *node, Quantity::number, between(kLeastSkinEdge, kMostSkinEdge),
+                    cells);
+        longest = cells;
+    } else {
+        table.mistake("divide", fmt::format("divide must be false or a number of cells, {} to {}, "
+                                            "without quotes",
+                                            kLeastSkinEdge, kMostSkinEdge));
+    }
+}
+
 void read_skin(TableReader& table, SkinSettings& skin) {
     table.choice<SkinKind>("kind",
                            {{"mount", SkinKind::mount},
                             {"frame4", SkinKind::frame4},
                             {"boundary", SkinKind::boundary}},
                            skin.kind);
-    table.truth("divide", skin.divide);
+    read_longest_edge(table, skin.longest_edge);
     table.quantity("crease_angle", Quantity::angle, between(0, kPi + 1e-12), skin.crease_angle);
     table.quantity("roughness", Quantity::number, between(0, kMostRoughness), skin.roughness);
     table.finish();

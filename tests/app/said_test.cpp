@@ -146,7 +146,6 @@ TEST_CASE("a record tells how its bodies were molded, dressed and placed") {
                                      {"turn_rad", {0, 2, 0}},
                                      {"velocity_m_s", {3, 0, 0}},
                                      {"spin_rad_s", {0, 0, 4}}}));
-    CHECK(
-        record.at("skin") ==
-        Json({{"kind", "mount"}, {"divide", true}, {"crease_angle_rad", 1}, {"roughness", 0.25}}));
+    CHECK(record.at("skin") ==
+          Json({{"kind", "mount"}, {"divide", 1.5}, {"crease_angle_rad", 1}, {"roughness", 0.25}}));
 }

@@ -121,19 +121,22 @@ TEST_CASE("what a boundary's meshes take is told by its cells, not by the mesh t
 }
 
 TEST_CASE("what a mesh of few triangles takes is told as it is once it is divided") {
-    const auto disk = [](const TriMesh& mesh, bool divide) {
+    const auto disk = [](const TriMesh& mesh, std::optional<double> longest) {
         BarScene bar(6);
         bar.input.mesh = mesh;
-        bar.scene.skin.divide = divide;
+        bar.scene.skin.longest_edge = longest;
         bar.scene.output.meshes_per_frame = true;
         bar.scene.stage[0].frames = 600;  // beside which matter that is kept is little
         return bar.cost().disk_bytes;
     };
     const TriMesh coarse = box_mesh({0, 0, 0}, {0.2, 0.02, 0.02});
-    const TriMesh divided = divide_edges(coarse, kLongestSkinEdge * 0.02 / 6);
-    CHECK(disk(coarse, true) == Approx(disk(divided, true)).epsilon(0.2));
-    CHECK(disk(divided, true) == disk(divided, false));
-    CHECK(disk(coarse, false) < 0.1 * disk(coarse, true));
+    const double longest = GENERATE(4., kLongestSkinEdge, 0.4);
+    const TriMesh divided = divide_edges(coarse, longest * 0.02 / 6);
+    // Edges are halved, so that how fine they become goes up in steps.
+    const double off = longest == kLongestSkinEdge ? 0.2 : 0.45;
+    CHECK(disk(coarse, longest) == Approx(disk(divided, longest)).epsilon(off));
+    CHECK(disk(divided, longest) == disk(divided, std::nullopt));
+    CHECK(disk(coarse, std::nullopt) < 0.3 * disk(coarse, longest));
 }
 
 TEST_CASE("what a run writes is told with tools, textures and skins that are stored anew") {

@@ -29,6 +29,28 @@ TEST_CASE("a scene says where light comes from, what is behind and which edges a
     CHECK(scene.render.light.elevation == Approx(kPi / 9));
 }
 
+TEST_CASE("a scene says how finely its skin is divided, or that it is not") {
+    const auto rest = [](const std::string& divide) {
+        return with(&Parts::rest, "[skin]\ndivide = " + divide + "\n").text();
+    };
+    const auto longest = [&](const std::string& divide) {
+        const SceneFolder scratch;
+        const SceneReading reading =
+            read_scene(scratch.write("s.toml", rest(divide)), {}, shipped());
+        REQUIRE(reading.scene);
+        return reading.scene->skin.longest_edge;
+    };
+    CHECK(SceneSpec().skin.longest_edge == kLongestSkinEdge);
+    CHECK(longest("true") == kLongestSkinEdge);
+    CHECK_FALSE(longest("false"));
+    CHECK(longest("0.5") == 0.5);
+    CHECK(longest("2") == 2);
+    CHECK(says(mistakes_in(rest("0.01")),
+               "11:10: divide = 0.01 is out of range: it must be 0.1 to 10"));
+    CHECK(says(mistakes_in(rest("\"fine\"")),
+               "11:10: divide must be false or a number of cells, 0.1 to 10, without quotes"));
+}
+
 TEST_CASE("angles of the camera are open where the scene does not give them") {
     const auto open = [](const std::string& camera) {
         const SceneFolder scratch;
