@@ -36,6 +36,12 @@ std::vector<std::vector<std::array<Vec3, 3>>> separate_sweeps(
     return separate;
 }
 
+// As that of a blade at rest.
+bool has_no_area(const std::vector<std::array<Vec3, 3>>& sweep) {
+    return std::ranges::all_of(
+        sweep, [](const auto& t) { return (t[1] - t[0]).cross(t[2] - t[0]).norm() == 0; });
+}
+
 // What of a sweep comes near the box.
 std::vector<std::array<Vec3, 3>> near_box(const std::vector<std::array<Vec3, 3>>& sweep,
                                           const Box& box) {
@@ -119,6 +125,7 @@ SweepPlanes sweep_planes(const std::vector<std::array<Vec3, 3>>& sweep, const Bo
             continue;
         }
         for (const std::vector<std::array<Vec3, 3>>& part : separate_sweeps(near_box(one, box))) {
+            if (has_no_area(part)) continue;
             const auto plane = fit_sweep_plane(part, tolerance);
             if (plane) found.plane.push_back(*plane);
             found.has_curved = found.has_curved || !plane;

@@ -31,3 +31,21 @@ TEST_CASE("what a blade sweeps forth and back lies in one plane, with one outlin
     CHECK(is_near(-0.07, -0.07, 0.1));
     CHECK(!is_near(-0.08, -0.08, 0.1));
 }
+
+TEST_CASE("a blade at rest beside what another cuts has no path that bends") {
+    const auto strip = [](const Vec3& a, const Vec3& b, const Vec3& way) {
+        return std::vector<std::array<Vec3, 3>>{{a, a + way, b + way}, {a, b + way, b}};
+    };
+    // One goes through the box; the edge of the other, which stands in it, is bent.
+    const Box box{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+    std::vector<std::array<Vec3, 3>> sweep =
+        strip(Vec3(0.1, 2, -2), Vec3(0.1, 2, 2), Vec3(0, -4, 0));
+    for (const auto& more : {strip(Vec3(0.5, -1, -2), Vec3(0.6, 0, 0), Vec3::Zero()),
+                             strip(Vec3(0.6, 0, 0), Vec3(0.5, 1, 2), Vec3::Zero())}) {
+        sweep.insert(sweep.end(), more.begin(), more.end());
+    }
+    const SweepPlanes found = sweep_planes(sweep, box, 1e-9);
+    REQUIRE(found.plane.size() == 1);
+    CHECK(std::abs(found.plane[0].normal.x()) == Approx(1));
+    CHECK(!found.has_curved);
+}
