@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/blade_way.h"
 #include "sim/crumbs.h"
 #include "sim/sever.h"
 #include "skin/broken_skin.h"
@@ -69,18 +70,20 @@ std::vector<char> pieces_to_keep(const WorkPiece& piece, const Aggregate& ahead)
 
 }  // namespace
 
-bool keep_what_is_not_shown(std::size_t body, Simulation& simulation, const WorkPiece& piece) {
+bool keep_what_is_not_shown(std::size_t body, Simulation& simulation, const WorkPiece& piece,
+                            const std::vector<char>& blades) {
     const Aggregate ahead = simulation.planned(body);
-    return simulation.keep(body, ahead, pieces_to_keep(piece, ahead));
+    return simulation.keep(body, ahead, pieces_to_keep(piece, ahead), blades);
 }
 
-bool settle_cut(const Machine& machine, std::span<const Drive> way, int steps, std::size_t body,
-                Simulation& simulation, WorkPiece& piece, int frame, WarningBook& warnings) {
-    simulation.plan_cuts(body, way, steps);
+bool settle_cut(const Machine& machine, std::span<const Drive> way, int steps,
+                const std::vector<char>& blades, std::size_t body, Simulation& simulation,
+                WorkPiece& piece, int frame, WarningBook& warnings) {
+    simulation.plan_cuts(body, way, steps, blades);
     UncutSkin before(piece);
-    const CutResult cut = cut_skins(piece, swept_triangles(machine.apparatus, way));
+    const CutResult cut = cut_skins(piece, swept_triangles(machine.apparatus, way_of(blades, way)));
     follow_matter(piece);
-    if (!keep_what_is_not_shown(body, simulation, piece)) {
+    if (!keep_what_is_not_shown(body, simulation, piece, blades)) {
         before.put_back(piece);
         return false;
     }

@@ -9,7 +9,6 @@
 #include "base/bytes.h"
 #include "base/failure.h"
 #include "base/units.h"
-#include "pipeline/blade_entry.h"
 #include "pipeline/body_table.h"
 #include "pipeline/boundary_note.h"
 #include "pipeline/curves.h"
@@ -22,7 +21,7 @@
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/run_record.h"
-#include "pipeline/settled_cut.h"
+#include "pipeline/stage_cuts.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/stage_meshes.h"
 #include "pipeline/stage_verdict.h"
@@ -34,10 +33,7 @@
 #include "pipeline/warning_book.h"
 #include "scene/product_names.h"
 #include "sim/advance.h"
-#include "sim/blade_way.h"
 #include "sim/given_up.h"
-#include "sim/sever.h"
-#include "skin/cut_mesh.h"
 
 namespace swage {
 
@@ -69,11 +65,11 @@ class StageRun {
           machine_(stage_machine(stage, bodies.front().matter, materials_beside(named(bodies)),
                                  box_of(bodies.front().position))),
           told_deep_(start_deep(machine_, named(bodies), overlaps_before_, moves_as_molded())),
-          pieces_before_(cuts_any() ? piece_count(bodies) : 0),
+          pieces_before_(!machine_.apparatus.blade.empty() ? piece_count(bodies) : 0),
           way_(stage, machine_, bodies.front().matter),
           limits_(stage, machine_),
           use_(bodies),
-          cuts_(bodies.size(), 0),
+          cuts_(stage, machine_, way_, bodies, totals_, warnings_),
           meshes_(context.scene, stage, context.root) {
         const auto lap = context_.watch.lap("set up");
         tell_machine();
@@ -244,8 +240,6 @@ class StageRun {
         }
     }
 
-    bool cuts_any() const { return !machine_.apparatus.blade.empty(); }
-
     // The machine goes through the n-th frame; false where that was given up. What was done of it,
     // to where the matter was last at rest or its steps were last right, is on the books and in
     // the skins either way.
@@ -256,13 +250,13 @@ class StageRun {
             for (; way_.goes_on_in(n); ++legs) {
                 throw_if_interrupted();
                 if (legs > 0) follow_on_the_way();
-                plan_cuts(simulation, number);
-                const PassedWatch uncut(bodies_, cuts_, machine_.apparatus, stage_.sim);
+                cuts_.plan(simulation, last_, number);
+                const PassedWatch uncut(bodies_, machine_.apparatus, stage_.sim);
                 FrameReport report = [&] {
                     const auto lap = context_.watch.lap("simulate");
                     return simulation.advance(way_.now(), way_.next(), way_.between());
                 }();
-                totals_.passed += uncut.count_passed(way_.now(), way_.next());
+                totals_.passed += uncut.count_passed(way_.now(), way_.next(), simulation);
                 if (report.severed > 0) hold_skins();
                 if (report.stop) {
                     stop(*report.stop, simulation, number);
@@ -313,62 +307,19 @@ class StageRun {
     // The machine has reached a limit, and goes on without coming any farther.
     void stop(const LimitStop& at, Simulation& simulation, int number) {
         way_.stop(at.at);
-        // Blades go on as they would have gone, in other legs.
-        for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            if (cuts_[b] == kGrazed) settle(simulation, b, number);
-            if (cuts_[b] != kCut) continue;
-            simulation.plan_cuts(b, way_.ahead(), way_.steps());
-            keep_what_is_not_shown(b, simulation, bodies_[b]);
-        }
-    }
-
-    // Once a blade is about to reach a body the whole cut is settled: in its matter and, along the
-    // same path, in its skin.
-    void plan_cuts(Simulation& simulation, int number) {
-        for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            if (cuts_[b]) continue;
-            const std::vector<Drive> leg = way_met(b, way_.leg_ahead());
-            if (simulation.blades_reach(b, leg)) {
-                settle(simulation, b, number);
-            } else {
-                look_for_blades(b, leg);
-            }
-        }
-    }
-
-    // The blades' way as a body meets it: where nothing holds that, it flies on.
-    std::vector<Drive> way_met(std::size_t b, std::span<const Drive> way) const {
-        const bool flies = cuts_any() && in_motion(stage_.sim.solver) &&
-                           !is_gripped(machine_.apparatus, b) && !(last_.body[b].contact > 0);
-        if (flies) return way_in_flight(bodies_[b].matter, machine_.apparatus, way);
-        return {way.begin(), way.end()};
-    }
-
-    void settle(Simulation& simulation, std::size_t b, int number) {
-        const bool is_cut = settle_cut(machine_, way_met(b, way_.ahead()), way_.steps(), b,
-                                       simulation, bodies_[b], number, warnings_);
-        cuts_[b] = is_cut ? kCut : kGrazed;
-        if (!is_cut) totals_.entered = bodies_[b].matter.lattice.spacing;
-    }
-
-    // Where nothing is severed: whether there is matter that blades go into on this leg.
-    void look_for_blades(std::size_t b, std::span<const Drive> leg) {
-        if (!cuts_any() || totals_.entered > 0 || totals_.severed > 0) return;
-        if (enters_matter(swept_triangles(machine_.apparatus, leg), bodies_[b].matter)) {
-            totals_.entered = bodies_[b].matter.lattice.spacing;
-        }
+        cuts_.plan_anew(simulation, last_, number);
     }
 
     // A skin is cut, and held where it is severed, where it is as a leg begins.
     void follow_on_the_way() {
-        if (!cuts_any()) return;
+        if (!cuts_.any_blade()) return;
         const auto lap = context_.watch.lap("skin");
         for (WorkPiece& body : bodies_) follow_matter(body);
     }
     void hold_skins() {
         const auto lap = context_.watch.lap("skin");
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            if (cuts_[b] == kCut) hold_skin(bodies_[b]);
+            if (cuts_.is_cut(b)) hold_skin(bodies_[b]);
         }
     }
 
@@ -446,16 +397,14 @@ class StageRun {
     StageWay way_;
     LimitWatch limits_;
     UseWatch use_;
-    // Of a body: whether its cut is settled, and by that none.
-    static constexpr char kCut = 1, kGrazed = 2;
-    std::vector<char> cuts_;
+    StageTotals totals_;
+    WarningBook warnings_;
+    StageCuts cuts_;
     const StageMeshes meshes_;
     int before_ = 0;  // the last frame before the stage
     std::optional<StageCurves> curves_;
     std::optional<BodyTable> body_table_;  // of a stage in motion
     FrameReport first_, last_;
-    StageTotals totals_;
-    WarningBook warnings_;
     StageOutcome outcome_;
 };
 

@@ -27,7 +27,7 @@ struct StageTotals : StepCounts {
     double stored = 0;       // at the end of any frame, the most [J]
     bool touched = false;    // by a tool: quasi-static at the end of a leg, in motion of any step
     double entered = 0;      // spacing of what blades went into and severed nothing of; 0: nothing
-    std::size_t passed = 0;  // connections that their motion took past a blade before any was cut
+    std::size_t passed = 0;  // connections that their motion took past a blade, uncut
     double remainder = 0;    // of the books, by now [J]
     double snapped = 0;      // the most by which one frame made it more [J]
     int snapped_in = 0;      // that frame

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "sim/block_steps.h"
 #include "sim/cell_flow.h"
 #include "sim/crumbs.h"
+#include "sim/cut_plan.h"
 #include "sim/energy_steps.h"
 #include "sim/given_up.h"
 #include "sim/lattice_forces.h"
@@ -62,8 +62,8 @@ struct WorkedBody {
     std::ptrdiff_t crumbs;  // particles
     Books books{};
     bool begun = false;
-    std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
-    std::vector<PointSide> sides{};              // of what these will part
+    CutPlan plan{};                  // cuts of the coming frames
+    std::vector<PointSide> sides{};  // of what these will part
 
     template <typename Io>
     void visit(Io& io) {
@@ -79,6 +79,7 @@ struct Simulation::Rooms {
     AnySolver solver;
     std::vector<double> work, load_work;  // of each tool and grip, load and gravity, on all bodies
     std::vector<long> severed;            // by each blade
+    Vec3 gravity;                         // at full strength [m/s2]
 
     template <typename Io>
     void visit(Io& io) {
@@ -203,7 +204,7 @@ Simulation::Rooms::Cut Simulation::Rooms::cut(std::size_t b, const Drive& from, 
         at.sides = sides_of(*at.matter, events, swept_triangles(apparatus, way));
     } else {
         if (moves()) {
-            if (!is_gripped(apparatus, b)) way = way_in_flight(*at.matter, apparatus, way);
+            if (!is_gripped(apparatus, b)) way = way_in_flight(*at.matter, apparatus, way, gravity);
             mark_met(at.plan, *at.matter, swept_triangles(apparatus, way),
                      kBeside * at.matter->lattice.spacing);
         }
@@ -278,7 +279,13 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
 
 Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                        const SimSettings& settings)
-    : rooms_(new Rooms{{}, apparatus, choose_solver(bodies, apparatus, settings), {}, {}, {}}) {
+    : rooms_(new Rooms{{},
+                       apparatus,
+                       choose_solver(bodies, apparatus, settings),
+                       {},
+                       {},
+                       {},
+                       settings.gravity}) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         Aggregate& matter = *bodies[b];
         if (!in_motion(settings.solver)) {
@@ -301,19 +308,26 @@ bool Simulation::blades_reach(std::size_t body, std::span<const Drive> way) cons
     return !rooms_->crossed(*rooms_->body[body].matter, way).empty();
 }
 
-void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int steps) {
+void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int steps,
+                           const std::vector<char>& blades) {
     const std::size_t each = static_cast<std::size_t>(steps);
     WorkedBody& at = rooms_->body[body];
-    Aggregate ahead = *at.matter;
-    at.plan.clear();
+    take_out(at.plan, blades);
+    if (!severs_any(at.plan)) at.sides.clear();
+    const std::vector<Drive> own =
+        blades.empty() ? std::vector<Drive>(way.begin(), way.end()) : way_of(blades, way);
+    Aggregate ahead = planned(body);
+    CutPlan more;
     std::vector<SeverEvent> all;
-    for (std::size_t n = 0; n + each < way.size(); n += each) {
-        at.plan.push_back(rooms_->crossed(ahead, way.subspan(n, each + 1)));
-        sever(ahead, at.plan.back());
-        name_blades(at.plan.back(), ahead, rooms_->apparatus, way);
-        all.insert(all.end(), at.plan.back().begin(), at.plan.back().end());
+    for (std::size_t n = 0; n + each < own.size(); n += each) {
+        more.push_back(rooms_->crossed(ahead, std::span(own).subspan(n, each + 1)));
+        sever(ahead, more.back());
+        name_blades(more.back(), ahead, rooms_->apparatus, own);
+        all.insert(all.end(), more.back().begin(), more.back().end());
     }
-    at.sides = sides_of(*at.matter, all, swept_triangles(rooms_->apparatus, way));
+    at.plan.resize(more.size());
+    add_plan(at.plan, more);
+    add_sides(at.sides, sides_of(*at.matter, all, swept_triangles(rooms_->apparatus, own)));
 }
 
 Aggregate Simulation::planned(std::size_t body) const {
@@ -322,11 +336,14 @@ Aggregate Simulation::planned(std::size_t body) const {
     return ahead;
 }
 
-bool Simulation::keep(std::size_t body, const Aggregate& planned, const std::vector<char>& piece) {
-    std::deque<std::vector<SeverEvent>>& plan = rooms_->body[body].plan;
-    keep_pieces(find_pieces(planned), piece, plan);
-    return std::any_of(plan.begin(), plan.end(),
-                       [](const auto& events) { return !events.empty(); });
+bool Simulation::keep(std::size_t body, const Aggregate& planned, const std::vector<char>& piece,
+                      const std::vector<char>& blades) {
+    // What others are to cut, for which its skin has been cut too, they cut.
+    CutPlan& plan = rooms_->body[body].plan;
+    CutPlan own = take_out(plan, blades);
+    keep_pieces(find_pieces(planned), piece, own);
+    add_plan(plan, own);
+    return severs_any(own);
 }
 
 std::vector<ToolLoad> Simulation::loads(const Drive& now) const {

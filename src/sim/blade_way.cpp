@@ -28,9 +28,17 @@ Vec3 middle_of_edge(const Blade& blade) {
 }  // namespace
 
 std::vector<Drive> way_in_flight(const Aggregate& matter, const Apparatus& apparatus,
-                                 std::span<const Drive> way) {
+                                 std::span<const Drive> way, const Vec3& gravity) {
     std::vector<Drive> met(way.begin(), way.end());
-    const Vec3 velocity = mean_velocity(matter);
+    std::vector<Vec3> flown(way.size(), Vec3::Zero());  // on the way to each drive
+    Vec3 velocity = mean_velocity(matter);
+    for (std::size_t n = 1; n < way.size(); ++n) {
+        const double time = way[n].time - way[n - 1].time;
+        const double strength = 0.5 * (way[n - 1].gravity_strength + way[n].gravity_strength);
+        const Vec3 gained = strength * time * gravity;
+        flown[n] = time * (velocity + 0.5 * gained);
+        velocity += gained;
+    }
     for (std::size_t b = 0; b < apparatus.blade.size(); ++b) {
         const Vec3 middle = middle_of_edge(apparatus.blade[b]);
         Vec3 farther = Vec3::Zero();
@@ -40,13 +48,22 @@ std::vector<Drive> way_in_flight(const Aggregate& matter, const Apparatus& appar
             const double length = goes.norm();
             if (length > 0) {
                 const Vec3 along = goes / length;
-                const double comes = std::max(0.0, -velocity.dot(along));
-                farther += comes * (way[n].time - way[n - 1].time) * along;
+                farther += std::max(0.0, -flown[n].dot(along)) * along;
             }
             met[n].world_from_blade[b].translation += farther;
         }
     }
     return met;
+}
+
+std::vector<Drive> way_of(const std::vector<char>& blades, std::span<const Drive> way) {
+    std::vector<Drive> own(way.begin(), way.end());
+    for (Drive& drive : own) {
+        for (std::size_t b = 0; b < blades.size(); ++b) {
+            if (!blades[b]) drive.world_from_blade[b] = own.front().world_from_blade[b];
+        }
+    }
+    return own;
 }
 
 bool is_gripped(const Apparatus& apparatus, std::size_t body) {

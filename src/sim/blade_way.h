@@ -11,12 +11,15 @@
 
 namespace swage {
 
-// The blades' way as a body meets it that flies on as it does now (way[0]): each blade is farther
-// on its own way by as much as the body has come against it along that. A blade cuts by its own
-// motion, so what comes along with it or across it adds nothing, and nothing adds to one that
-// rests. That of a body at rest is as given.
+// The blades' way as a body meets it that flies on as it does now (way[0]) and falls: each blade is
+// farther on its own way by as much as the body has come against it along that. A blade cuts by its
+// own motion, so what comes along with it or across it adds nothing, and nothing adds to one that
+// rests. That of a body that stays at rest is as given. `gravity`: at full strength [m/s2].
 std::vector<Drive> way_in_flight(const Aggregate& matter, const Apparatus& apparatus,
-                                 std::span<const Drive> way);
+                                 std::span<const Drive> way, const Vec3& gravity);
+
+// The way on which the others than the marked blades stand still, and so sweep nothing.
+std::vector<Drive> way_of(const std::vector<char>& blades, std::span<const Drive> way);
 
 bool is_gripped(const Apparatus& apparatus, std::size_t body);
 

@@ -109,6 +109,29 @@ TEST_CASE("what flies against a slow blade is cut; what grips carry past it uncu
     CHECK(!says(carried, "met no matter"));
 }
 
+TEST_CASE("what grips carry past a blade that has cut a part of it is told of") {
+    const Scratch scratch;
+    fs::create_directory(scratch.path() / "machines");
+    put_text(scratch.path() / "machines/part.toml",
+             "help = \"a blade that goes in\"\n[[blade]]\nname = \"blade\"\n"
+             "edge = [[0.001, \"0.51*height\", \"-width\"], [0.001, \"0.51*height\", \"width\"]]\n"
+             "[blade.motion]\nmove = [0, \"-0.4*height*t\", 0]\n"
+             "[[grip]]\nname = \"all\"\nfrom = [\"-length\", \"-height\", \"-width\"]\n"
+             "to = [\"length\", \"height\", \"width\"]\n[grip.motion]\n"
+             "move = [0, \"4*height*line(t, 0.5, 1)\", 0]\n");
+    swage::write_obj(scratch.path() / "body.obj", kBar);
+    put_text(scratch.path() / "scene.toml",
+             "[mesh]\nfile = \"body.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 6\n"
+             "[[stage]]\nmachine = \"part\"\nframes = 40\nsolver = \"explicit\"\n"
+             "duration = \"10 ms\"\n");
+    const Outcome outcome =
+        run_swage({"run", "scene.toml", "--out", "run", "--no-render"}, scratch.path());
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(says(outcome.err, " connections but separated nothing: "));
+    CHECK(says(outcome.err, " others passed the edge uncut, as the body itself moved them past"));
+}
+
 TEST_CASE("a blade is said to have gone into what was there when it passed, not what came later") {
     // It falls beyond the bar's end; then the bar is drawn to where it was.
     const auto told = [&](const char* place) {

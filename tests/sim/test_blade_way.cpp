@@ -33,7 +33,7 @@ Passage pass_slow_blade(const Vec3& speed, int frames, double duration, bool fli
     const auto met = [&, &block = block, &apparatus = apparatus](std::size_t from,
                                                                  std::size_t count) {
         const auto part = std::span<const Drive>(way).subspan(from, count);
-        return flies ? way_in_flight(block, apparatus, part)
+        return flies ? way_in_flight(block, apparatus, part, Vec3::Zero())
                      : std::vector<Drive>(part.begin(), part.end());
     };
     Simulation simulation(block, apparatus, motion_settings());
@@ -96,12 +96,12 @@ TEST_CASE(
         way.push_back(still(0.1 * double(way.size())));
         way.back().world_from_blade = {Pose{Quat::Identity(), Vec3(0, y, 0)}};
     }
-    const auto comes_to = [&](const Vec3& speed) {
+    const auto comes_to = [&](const Vec3& speed, const Vec3& gravity = Vec3::Zero()) {
         for (std::size_t p = 0; p < block.particle_count(); ++p) {
             block.particle_velocity.set(p, speed);
         }
         const Vec3 last =
-            way_in_flight(block, apparatus, way).back().world_from_blade[0].translation;
+            way_in_flight(block, apparatus, way, gravity).back().world_from_blade[0].translation;
         CHECK(std::abs(last.x()) < 1e-12);
         CHECK(std::abs(last.z()) < 1e-12);
         return last.y();
@@ -110,4 +110,11 @@ TEST_CASE(
     CHECK(comes_to(Vec3(5, 0, 7)) == Approx(0.3));
     CHECK(comes_to(Vec3(0, -0.5, 0)) == Approx(0.3));
     CHECK(comes_to(Vec3(1, 4, 0)) == Approx(0.3 - 2 * 0.1 * 4));
+    // Gravity adds to it, but for the way that it goes while the blade rests.
+    const double g = 10;
+    CHECK(comes_to(Vec3(1, 4, 0), Vec3(0, g, 0)) ==
+          Approx(0.3 - 2 * 0.1 * 4 - 0.5 * g * (0.1 * 0.1 + 0.3 * 0.3 - 0.2 * 0.2)));
+    CHECK(comes_to(Vec3(1, 4, 0), Vec3(0, -40, 0)) == Approx(0.3 - (0.1 * 4 - 0.5 * 40 * 0.01)));
+    for (std::size_t n = 0; n < way.size(); ++n) way[n].gravity_strength = 0.5;
+    CHECK(comes_to(Vec3::Zero(), Vec3(0, g, 0)) == Approx(0.3 - 0.25 * g * 0.06));
 }

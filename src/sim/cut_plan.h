@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts of one body that are yet to be made, of blades that come to it at different times.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "matter/point_side.h"
+#include "sim/sever.h"
+
+namespace swage {
+
+using CutPlan = std::deque<std::vector<SeverEvent>>;  // by leg, from the coming one on
+
+// Takes what the marked blades are to sever out of the plan, which keeps its length; none marked:
+// of all.
+CutPlan take_out(CutPlan& plan, const std::vector<char>& blades);
+// Of as many legs; the other's events come behind its own.
+void add_plan(CutPlan& plan, const CutPlan& more);
+bool severs_any(const CutPlan& plan);
+
+// Of a point that both tell of only the corners on its side by both are.
+void add_sides(std::vector<PointSide>& sides, const std::vector<PointSide>& more);
+
+}  // namespace swage
