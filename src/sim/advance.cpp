@@ -181,10 +181,9 @@ std::vector<ToolLoad> Simulation::Rooms::loads(const Drive& now,
 }
 
 // What moves may have left the path that it was to be cut along, or be ahead of the blade there: it
-// waits until a blade has been beside it. Returns how many will not see that.
+// waits until a blade has been beside it. Returns how many will not see that. Met ones come first.
 std::size_t Simulation::Rooms::put_off(WorkedBody& at, std::vector<SeverEvent>& events) const {
-    const auto waits = std::stable_partition(events.begin(), events.end(),
-                                             [](const SeverEvent& e) { return e.met; });
+    const auto waits = std::ranges::find_if(events, [](const SeverEvent& e) { return !e.met; });
     const auto count = static_cast<std::size_t>(events.end() - waits);
     if (!at.plan.empty()) at.plan.front().insert(at.plan.front().end(), waits, events.end());
     events.erase(waits, events.end());
@@ -214,6 +213,8 @@ Simulation::Rooms::Cut Simulation::Rooms::cut(std::size_t b, const Drive& from, 
         std::erase_if(events, [&](const SeverEvent& e) {
             return at.matter->connection[e.direction].weight[e.lower] <= 0;
         });
+        std::ranges::stable_partition(events, &SeverEvent::met);
+        drop_doubles(events);
         if (moves()) cut.missed = put_off(at, events);
     }
     if (events.empty()) return cut;
@@ -316,7 +317,7 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
     if (!severs_any(at.plan)) at.sides.clear();
     const std::vector<Drive> own =
         blades.empty() ? std::vector<Drive>(way.begin(), way.end()) : way_of(blades, way);
-    Aggregate ahead = planned(body);
+    Aggregate ahead = *at.matter;
     CutPlan more;
     std::vector<SeverEvent> all;
     for (std::size_t n = 0; n + each < own.size(); n += each) {
@@ -342,8 +343,9 @@ bool Simulation::keep(std::size_t body, const Aggregate& planned, const std::vec
     CutPlan& plan = rooms_->body[body].plan;
     CutPlan own = take_out(plan, blades);
     keep_pieces(find_pieces(planned), piece, own);
+    const bool is_more = severs_more(own, plan);
     add_plan(plan, own);
-    return severs_any(own);
+    return is_more;
 }
 
 std::vector<ToolLoad> Simulation::loads(const Drive& now) const {

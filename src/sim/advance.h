@@ -75,16 +75,16 @@ class Simulation {
     // is now.
     bool blades_reach(std::size_t body, std::span<const Drive> way) const;
 
-    // Plans all cuts of the marked blades (none marked: of all) in the coming frames, of `steps`
-    // drives each (way[0] is now), through a body as it is now: halves that spring apart under the
-    // blade are severed where it first aimed, so that a skin that was cut along the same path opens
-    // cleanly. What was planned of these is no more, of others it stays. Frames beyond the plan
-    // sever what they meet.
+    // Plans all cuts of the marked blades (empty: of all) on the coming legs, of `steps` drives
+    // each (way[0] is now), through a body as it is now: halves that spring apart under the blade
+    // are severed where it first aimed, so that a skin that was cut along the same path opens
+    // cleanly. What was planned of these is no more, of others it stays; of two blades the one that
+    // comes first severs what both are to. Legs beyond the plan sever what they meet.
     void plan_cuts(std::size_t body, std::span<const Drive> way, int steps,
                    const std::vector<char>& blades = {});
     // The body once all of its plan is severed; then of the pieces of that the marked ones, which
     // stay with one that these blades would cut them from: false where this leaves them nothing to
-    // sever.
+    // sever that no other blade is to.
     Aggregate planned(std::size_t body) const;
     bool keep(std::size_t body, const Aggregate& planned, const std::vector<char>& piece,
               const std::vector<char>& blades = {});

@@ -2,8 +2,18 @@
 #include "sim/cut_plan.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 namespace swage {
+
+namespace {
+
+using Connection = std::pair<int, ParticleId>;
+
+Connection connection_of(const SeverEvent& e) { return {e.direction, e.lower}; }
+
+}  // namespace
 
 CutPlan take_out(CutPlan& plan, const std::vector<char>& blades) {
     CutPlan own(plan.size());
@@ -26,6 +36,23 @@ void add_plan(CutPlan& plan, const CutPlan& more) {
 
 bool severs_any(const CutPlan& plan) {
     return std::ranges::any_of(plan, [](const auto& events) { return !events.empty(); });
+}
+
+bool severs_more(const CutPlan& plan, const CutPlan& than) {
+    std::set<Connection> known;
+    for (const auto& events : than) {
+        for (const SeverEvent& e : events) known.insert(connection_of(e));
+    }
+    return std::ranges::any_of(plan, [&](const auto& events) {
+        return std::ranges::any_of(
+            events, [&](const SeverEvent& e) { return !known.contains(connection_of(e)); });
+    });
+}
+
+void drop_doubles(std::vector<SeverEvent>& events) {
+    std::set<Connection> known;
+    std::erase_if(events,
+                  [&](const SeverEvent& e) { return !known.insert(connection_of(e)).second; });
 }
 
 void add_sides(std::vector<PointSide>& sides, const std::vector<PointSide>& more) {

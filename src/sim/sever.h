@@ -43,12 +43,14 @@ bool crosses(const std::vector<std::array<Vec3, 3>>& swept, const Vec3& from, co
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<std::array<Vec3, 3>>& swept);
 
-// Of several blades that cross a connection on their way the first by number is its blade,
-// whichever comes first: one beside it that finds nothing else parts nothing.
+// Of several blades that cross a connection on this way the first by number is its blade, whichever
+// comes first: one beside it that finds nothing else parts nothing. Those that are planned at
+// different times are named apart (sim/cut_plan.h).
 void name_blades(std::span<SeverEvent> events, const Aggregate& matter, const Apparatus& apparatus,
                  std::span<const Drive> way);
 
-// Of events to come, by frame: those whose middle is within `reach` [m] of the surface are met.
+// Of events to come, by leg: those whose middle is within `reach` [m] of the surface are met,
+// whichever blade they were planned for.
 void mark_met(std::deque<std::vector<SeverEvent>>& plan, const Aggregate& matter,
               const std::vector<std::array<Vec3, 3>>& swept, double reach);
 

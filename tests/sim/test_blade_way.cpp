@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+
 #include "sim/advance.h"
 #include "sim/blade_way.h"
 #include "tests/catch.h"
@@ -117,4 +120,54 @@ TEST_CASE(
     CHECK(comes_to(Vec3(1, 4, 0), Vec3(0, -40, 0)) == Approx(0.3 - (0.1 * 4 - 0.5 * 40 * 0.01)));
     for (std::size_t n = 0; n < way.size(); ++n) way[n].gravity_strength = 0.5;
     CHECK(comes_to(Vec3::Zero(), Vec3(0, g, 0)) == Approx(0.3 - 0.25 * g * 0.06));
+}
+
+namespace {
+
+// Of two blades the first by number comes down x = 0.3 cm in 12 drives from when it reaches the
+// body, of 12 cm; the second goes along `across` through it in 4, from the fourth on. Pieces after
+// each drive.
+std::vector<int> pieces_by_two(Solver solver, const Vec3& edge, const Vec3& across,
+                               std::array<long, 2>& severed) {
+    FlyingBlock at_rest(Vec3::Zero());
+    auto& [block, apparatus] = at_rest;
+    apparatus.blade.push_back({"second", {edge - Vec3::UnitZ(), edge + Vec3::UnitZ()}, {}});
+    std::vector<Drive> way;
+    for (int n = 0; n <= 16; ++n) {
+        way.push_back(FlyingBlock::with_edge_at(0.065 - 0.01 * n, 1e-3 * n));
+        const double gone = 0.05 * std::clamp(n - 3, 0, 4);
+        way.back().world_from_blade.push_back({Quat::Identity(), gone * across});
+    }
+    Simulation simulation(block, apparatus, motion_settings(solver));
+    std::vector<int> pieces;
+    for (std::size_t n = 0; n + 1 < way.size(); ++n) {
+        const std::span<const Drive> ahead = std::span<const Drive>(way).subspan(n);
+        if (n == 0) simulation.plan_cuts(0, ahead, 1, {1, 0});
+        if (n == 3) simulation.plan_cuts(0, ahead, 1, {0, 1});
+        const FrameReport r = simulation.advance(way[n], way[n + 1]);
+        CHECK(r.warning.empty());
+        pieces.push_back(r.pieces);
+        for (std::size_t b = 0; b < 2; ++b) severed[b] = r.load[b].severed;
+    }
+    return pieces;
+}
+
+}  // namespace
+
+TEST_CASE("a blade that comes later and goes faster parts what another has yet to reach") {
+    const Solver solver =
+        GENERATE(Solver::explicit_steps, Solver::energy_stepped, Solver::quasistatic);
+    std::array<long, 2> severed{};
+    // Across the way of the first, below where that is by then.
+    const std::vector<int> across =
+        pieces_by_two(solver, Vec3(-0.1, -0.027, 0), Vec3::UnitX(), severed);
+    CHECK(across[5] == 1);
+    CHECK(across[6] == 2);
+    CHECK(across.back() == 4);
+    // Along it, from the other side.
+    const std::vector<int> along =
+        pieces_by_two(solver, Vec3(0.003, -0.1, 0), Vec3::UnitY(), severed);
+    CHECK(along[6] == 2);
+    CHECK(along.back() == 2);
+    CHECK(std::size_t(severed[0] + severed[1]) == kAcross);
 }
