@@ -250,7 +250,7 @@ class StageRun {
             for (; way_.goes_on_in(n); ++legs) {
                 throw_if_interrupted();
                 if (legs > 0) follow_on_the_way();
-                cuts_.plan(simulation, last_, number);
+                cuts_.plan(simulation, legs > 0 ? frame : last_, number);
                 const PassedWatch uncut(bodies_, machine_.apparatus, stage_.sim);
                 FrameReport report = [&] {
                     const auto lap = context_.watch.lap("simulate");

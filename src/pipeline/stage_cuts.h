@@ -26,7 +26,7 @@ class StageCuts {
     bool is_cut(std::size_t body) const;
 
     // As a leg begins: once a blade is about to reach a body its whole cut is settled, as the body
-    // lies then; in its matter and, along the same path, in its skin. `last`: how the frame before
+    // lies then; in its matter and, along the same path, in its skin. `last`: how the leg before
     // ended.
     void plan(Simulation& simulation, const FrameReport& last, int number);
     // The machine has come to stop. Blades go on as they would have gone, in other legs.

@@ -203,7 +203,10 @@ Simulation::Rooms::Cut Simulation::Rooms::cut(std::size_t b, const Drive& from, 
         at.sides = sides_of(*at.matter, events, swept_triangles(apparatus, way));
     } else {
         if (moves()) {
-            if (!is_gripped(apparatus, b)) way = way_in_flight(*at.matter, apparatus, way, gravity);
+            if (!is_gripped(apparatus, b)) {
+                const bool falls = !(at.books.contact > 0);
+                way = way_in_flight(*at.matter, apparatus, way, falls ? gravity : Vec3::Zero());
+            }
             mark_met(at.plan, *at.matter, swept_triangles(apparatus, way),
                      kBeside * at.matter->lattice.spacing);
         }

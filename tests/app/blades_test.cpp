@@ -177,3 +177,30 @@ TEST_CASE("what gravity speeds up past a slow edge is cut as it passes") {
           2);
     CHECK(!says(outcome.err, "separated nothing"));
 }
+
+TEST_CASE("what lies on a floor as a stage begins does not fall past a blade from below") {
+    // In a frame of many legs, as a tool far away goes round.
+    const Scratch scratch;
+    const fs::path folder = scratch.path();
+    fs::create_directory(folder / "machines");
+    put_text(folder / "machines/lie.toml",
+             "help = \"a blade that goes in\"\nmoves = true\nupright = true\n"
+             "[[tool]]\nname = \"floor\"\nshape = \"box\"\nsize = [2, 2, 0.1]\naxis = [0, 1, 0]\n"
+             "at = [0, 0, 0]\ntouch = [0, 1, 0]\ngap = 0\nfinish = \"endless\"\n"
+             "[[tool]]\nname = \"far\"\nshape = \"box\"\nsize = [0.1, 0.1, 0.1]\nat = [3, 0, 0]\n"
+             "[tool.motion]\nmove = [\"0.5*sin(9*t)\", 0, \"0.5*cos(9*t)\"]\n"
+             "[[blade]]\nname = \"blade\"\n"
+             "edge = [[0.003, \"-height/2 - 0.001\", -1], [0.003, \"-height/2 - 0.001\", 1]]\n"
+             "[blade.motion]\nmove = [0, \"0.05*line(t, 0.1, 1)\", 0]\n");
+    put_text(folder / "scene.toml",
+             "[mesh]\nfile = \"" SWAGE_SOURCE_DIR
+             "/assets/meshes/cube.obj\"\nlength = \"12 cm\"\n[material]\n"
+             "young_modulus = \"1 MPa\"\ndensity = 1000\nrestitution = 0\n"
+             "[mold]\nacross = 6\n[[stage]]\nmachine = \"lie\"\ngravity = \"9.81 m/s2\"\n"
+             "duration = \"0.2 s\"\nframes = 2\n");
+    const Outcome outcome = run_swage({"run", "scene.toml", "--no-render", "--out", "out"}, folder);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(part_volumes(folder / "out/meshes/1-lie.obj").size() == 1);
+    CHECK(!says(outcome.err, "moved out of it"));
+}
