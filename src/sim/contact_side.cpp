@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
@@ -165,35 +166,46 @@ void ContactSide::find_cells() {
     }
 }
 
+// Of the surface as molded, where a place in or beside the cell is near it: by the cell that holds
+// the place, which a blade may have crossed, or by the last before it where there is none.
+std::optional<RestSurface::Depth> ContactSide::molded_depth(const Vec3i& site, CellId cell,
+                                                            const Vec3& place) const {
+    const Vec3 beyond = place - place.cwiseMax(0.0).cwiseMin(1.0);
+    const Vec3i out = Vec3i((beyond.array() > 0).cast<int>() - (beyond.array() < 0).cast<int>());
+    const CellId beside = out.isZero() ? cell : matter_->lattice.cell_at(site + out);
+    if (beside >= 0) {
+        if (molded_->is_rim(beside)) return molded_->at(beside, place - out.cast<double>());
+        if (molded_->is_rim(cell)) return molded_->at(cell, place);
+        return {};
+    }
+    CellId last = -1;
+    Vec3 local = place;
+    double least = std::numeric_limits<double>::infinity();
+    for (int axes = 0; axes < 7; ++axes) {
+        const Vec3i step = out.cwiseProduct(corner_step(axes));
+        const CellId there = step.isZero() ? cell : matter_->lattice.cell_at(site + step);
+        if (there < 0 || !molded_->is_rim(there)) continue;
+        const Vec3 left = beyond.cwiseProduct((step - out).cast<double>());
+        if (left.squaredNorm() >= least) continue;
+        least = left.squaredNorm();
+        last = there;
+        local = place - step.cast<double>();
+    }
+    if (last < 0) return {};
+    return molded_->at_sliver(last, local);
+}
+
 RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
                                             const Vec3& place) const {
-    CellId at = cell;
-    Vec3 local = place;
-    const Vec3i out =
-        Vec3i((place.array() > 1).cast<int>()) - Vec3i((place.array() < 0).cast<int>());
-    if (!out.isZero()) {
-        const Vec3i next = site + out;
-        const CellId beside = matter_->lattice.cell_at(next);
-        if (beside >= 0 && molded_->is_rim(beside)) {
-            at = beside;
-            local -= out.cast<double>();
-        }
-        if (beside < 0 && molded_->is_rim(cell) && !cut_->is_rim(cell)) {
-            return molded_->at_sliver(cell, place);
-        }
-    }
-    if (!cut_->is_rim(cell)) return molded_->at(at, local);
+    const std::optional<RestSurface::Depth> own = molded_depth(site, cell, place);
+    if (!cut_->is_rim(cell)) return *own;
     RestSurface::Depth face = cut_->at(cell, place);
     // The new surface is half a cell before the face at most, so that nothing that is held there
     // is let go at once.
-    if (!out.isZero()) {
-        const Vec3 beyond = place - place.cwiseMax(0.0).cwiseMin(1.0);
-        const double far = beyond.norm();
-        if (far - 0.5 > face.distance) face = {far - 0.5, beyond / far};
-    }
-    if (!molded_->is_rim(at)) return face;
-    const RestSurface::Depth own = molded_->at(at, local);
-    return own.distance > face.distance ? own : face;
+    const Vec3 beyond = place - place.cwiseMax(0.0).cwiseMin(1.0);
+    const double far = beyond.norm();
+    if (far - 0.5 > face.distance && far > 0) face = {far - 0.5, beyond / far};
+    return own && own->distance > face.distance ? *own : face;
 }
 
 // Only where cells have broken, or are whole again, is anything else connected than before: a break

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -89,6 +90,8 @@ class ContactSide {
     }
 
   private:
+    std::optional<RestSurface::Depth> molded_depth(const Vec3i& site, CellId cell,
+                                                   const Vec3& place) const;
     RestSurface::Depth least_depth(const Vec3i& site, CellId cell, const Vec3& place) const;
     void find_cells();
     void find_near();
