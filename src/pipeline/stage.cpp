@@ -29,6 +29,7 @@
 #include "pipeline/start_overlap.h"
 #include "pipeline/start_warnings.h"
 #include "pipeline/stiffness_note.h"
+#include "pipeline/thin_pieces_note.h"
 #include "pipeline/use_watch.h"
 #include "pipeline/warning_book.h"
 #include "scene/product_names.h"
@@ -125,6 +126,9 @@ class StageRun {
         const std::string note = stiffness_note(stage_, named(bodies_));
         if (!note.empty()) told.push_back(note);
         for (std::string& one : boundary_notes(bodies_)) told.push_back(std::move(one));
+        for (std::string& one : thin_pieces_notes(bodies_, stage_.sim)) {
+            told.push_back(std::move(one));
+        }
         for (const std::string& one : told) warn(fmt::format("{}: {}", stage_.name, one));
     }
 

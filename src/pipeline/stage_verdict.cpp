@@ -9,6 +9,7 @@
 #include "machines/start_notes.h"
 #include "pipeline/books_verdict.h"
 #include "pipeline/boundary_note.h"
+#include "pipeline/thin_pieces_note.h"
 #include "sim/cell_volume.h"
 #include "sim/flowed_volume.h"
 #include "sim/gripped_pieces.h"
@@ -296,6 +297,9 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     }
     if (whole) {
         for (const std::string& one : idle_parts(end)) warn(one);
+    }
+    if (end.totals.severed > 0) {
+        for (const std::string& one : thin_pieces_notes(end.bodies, sim)) warn(one);
     }
     if (const std::string pressed = pressed_at_start(end); !pressed.empty()) warn(pressed);
     for (const std::string& one : judge_books(end)) warn(one);

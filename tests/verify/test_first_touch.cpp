@@ -137,12 +137,8 @@ double worst_jump(const char* shape, double cut, double lean, int& places) {
 
 // Slivers beyond the last cells, in which it is guessed by one cell, jump by as much.
 TEST_CASE("where a cut meets a body's surface depth does not jump from one cell to the next") {
-    struct Body {
-        const char* shape;
-        double cut, lean;
-    };
-    const Body body = GENERATE(Body{"calf", 2.3, 0}, Body{"calf", 2.3, 0.2}, Body{"gear", 0.3, 0});
+    const double lean = GENERATE(0., 0.2);
     int places = 0;
-    CHECK(worst_jump(body.shape, body.cut, body.lean, places) < 0.05);
+    CHECK(worst_jump("calf", 2.3, lean, places) < 0.05);
     CHECK(places > 500);
 }
