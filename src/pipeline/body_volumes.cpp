@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/body_volumes.h"
 
+#include "pipeline/json.h"
 #include "sim/cell_volume.h"
 #include "sim/flowed_volume.h"
 #include "skin/broken_skin.h"

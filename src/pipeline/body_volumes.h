@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/json.h"
+#include "pipeline/json_name.h"
 #include "pipeline/work_piece.h"
 
 namespace swage {

@@ -11,6 +11,7 @@
 
 #include "pipeline/frame_store.h"
 #include "pipeline/json.h"
+#include "pipeline/run_identity.h"
 #include "pipeline/work_piece.h"
 
 namespace swage {
@@ -28,10 +29,6 @@ struct Reached {
     std::vector<int> skin;  // of each body: its number in the motion file
     std::string foreseen;   // key of the whole run whose stages `start_warning` foresees
 };
-
-// Of a run that has finished so many stages: what made it what it is until then, and which build
-// reads it again (RunIdentity).
-using StageKeys = std::vector<std::string>;
 
 // Under its name when it is whole. Throws Error(output).
 void write_checkpoint(const std::filesystem::path& file, const StageKeys& keys,

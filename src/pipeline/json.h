@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace swage {
+#include "pipeline/json_name.h"
 
-using Json = nlohmann::ordered_json;
+namespace swage {
 
 // Of what reads and writes it each place that does would compile its own, a second's worth.
 Json parse_json(const std::string& text);  // throws Json::exception

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "pipeline/checkpoint.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_mark.h"
 #include "scene/spec.h"

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/units.h"
+#include "pipeline/json.h"
 
 namespace swage {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "machines/machine.h"
-#include "pipeline/json.h"
+#include "pipeline/json_name.h"
 #include "scene/spec.h"
 #include "sim/advance.h"
 

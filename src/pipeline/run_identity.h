@@ -24,6 +24,10 @@ struct RunInput {
 // Of the scene's file and the command line it matters what they say, not how.
 bool is_said(const RunInput& input);
 
+// Of a run that has finished so many stages: what made it what it is until then, and which build
+// reads it again.
+using StageKeys = std::vector<std::string>;
+
 struct RunIdentity {
     std::string version = kVersion;
     std::vector<RunInput> input;
@@ -31,7 +35,7 @@ struct RunIdentity {
     std::vector<Said> said = {};
     // Of the run up to each stage, from none of them to all, a text that is another where anything
     // is that what was done until then depends on.
-    std::vector<std::string> stage_key = {};
+    StageKeys stage_key = {};
 };
 
 // One sentence a difference, empty when they are the same run. File names may differ.

@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "pipeline/checkpoint.h"
+#include "pipeline/frame_store.h"
+#include "pipeline/run_identity.h"
+#include "pipeline/work_piece.h"
 
 namespace swage {
 

@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "geometry/mesh_objects.h"
 #include "pipeline/given_record.h"
+#include "pipeline/json.h"
 #include "pipeline/machine_place.h"
 #include "skin/skin_pieces.h"
 

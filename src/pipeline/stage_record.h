@@ -10,7 +10,7 @@
 #include "machines/machine.h"
 #include "pipeline/body_volumes.h"
 #include "pipeline/curves.h"
-#include "pipeline/json.h"
+#include "pipeline/json_name.h"
 #include "pipeline/probes.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"

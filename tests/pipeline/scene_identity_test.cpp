@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/scene_identity.h"
 
-#include "pipeline/checkpoint.h"
-
 #include "tests/catch.h"
 #include "tests/shared/scratch.h"
 
