@@ -4,8 +4,30 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <sstream>
 
 namespace swage {
+
+// NOTE: fmt::join over strings makes GCC 12 warn of what is not there.
+std::string joined(const std::vector<std::string>& items, const char* separator) {
+    std::string text;
+    for (const std::string& item : items) {
+        if (&item != &items.front()) text += separator;
+        text += item;
+    }
+    return text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
 
 std::string printable(std::string_view text) {
     std::string shown;

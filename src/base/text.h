@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small work on text. (fmt::join over strings makes GCC 12 warn of what is not there.)
+// Small work on text; other text is made by fmt.
 #pragma once
 
 #include <fmt/format.h>
 
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace swage {
 
-inline std::string joined(const std::vector<std::string>& items, const char* separator) {
-    std::string text;
-    for (const std::string& item : items) {
-        if (&item != &items.front()) text += separator;
-        text += item;
-    }
-    return text;
-}
-
-inline std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream in(text);
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-}
+std::string joined(const std::vector<std::string>& items, const char* separator);
+std::vector<std::string> lines_of(const std::string& text);
 
 // "1 hole", "3 holes".
-inline std::string counted(std::size_t count, const char* one, const char* many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
-}
+std::string counted(std::size_t count, const char* one, const char* many);
 
 // For terminals and for sentences that are C strings: control characters but tabs and ends of lines
 // as "\x1b".

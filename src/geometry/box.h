@@ -30,28 +30,41 @@ struct Box {
         }
     }
     void grow(const Box& other) {
-        low = low.cwiseMin(other.low);
-        high = high.cwiseMax(other.high);
+        for (int i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], other.low[i]);
+            high[i] = std::max(high[i], other.high[i]);
+        }
     }
-    Box widened(double by) const { return {low - Vec3::Constant(by), high + Vec3::Constant(by)}; }
+    Box widened(double by) const {
+        return {{low.x() - by, low.y() - by, low.z() - by},
+                {high.x() + by, high.y() + by, high.z() + by}};
+    }
     // With their faces.
     bool contains(const Vec3& point) const {
-        return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
+        for (int i = 0; i < 3; ++i) {
+            if (!(low[i] <= point[i] && point[i] <= high[i])) return false;
+        }
+        return true;
     }
     // 0: it is inside.
-    double gap_to(const Vec3& point) const {
-        return (low - point).cwiseMax(point - high).cwiseMax(0.0).norm();
-    }
+    double gap_to(const Vec3& point) const;
     bool overlaps(const Box& other) const {
-        return (low.array() <= other.high.array()).all() &&
-               (other.low.array() <= high.array()).all();
+        for (int i = 0; i < 3; ++i) {
+            if (!(low[i] <= other.high[i] && other.low[i] <= high[i])) return false;
+        }
+        return true;
     }
 };
 
 // 0: they overlap.
 inline double gap_between(const Box& a, const Box& b) {
-    return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
+    Vec3 gap;
+    for (int i = 0; i < 3; ++i) {
+        gap[i] = std::max(std::max(a.low[i] - b.high[i], b.low[i] - a.high[i]), 0.0);
+    }
+    return gap.norm();
 }
+inline double Box::gap_to(const Vec3& point) const { return gap_between(*this, {point, point}); }
 
 inline Box box_of(const std::vector<Vec3>& points) {
     Box box;
