@@ -157,7 +157,9 @@ class ReferencePlaces {
     Vec3 at(std::size_t particle) const;
     // Of a place in a cell, by its lowest corner.
     Vec3 in_cell(std::size_t corner, const Vec3& place) const {
-        return at(corner) + step_.cwiseProduct(place);
+        const Vec3 low = at(corner);
+        return {low.x() + step_.x() * place.x(), low.y() + step_.y() * place.y(),
+                low.z() + step_.z() * place.z()};
     }
     Vec3Array all() const;
 

@@ -2,7 +2,6 @@
 // What a tool or grip may bear: at it a machine comes no farther.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 
 #include "base/math.h"
@@ -16,10 +15,7 @@ struct TurnAxis {
     Vec3 along = Vec3::UnitZ(), at = Vec3::Zero();
 
     // The part's torque about it [N m]. `torque`: about the pose's origin.
-    double torque_of(const Vec3& force, const Vec3& torque, const Pose& world_from_part) const {
-        const Vec3 arm = world_from_part.turn(-at);
-        return world_from_part.turn(along).dot(torque + arm.cross(force));
-    }
+    double torque_of(const Vec3& force, const Vec3& torque, const Pose& world_from_part) const;
 };
 
 struct LoadLimit {
@@ -30,9 +26,7 @@ struct LoadLimit {
 
     // Of what a part exerts on the matter, that which is limited: the size of its force, or of its
     // torque about the axis. `torque`: about the pose's origin.
-    double borne(const Vec3& force, const Vec3& torque, const Pose& world_from_part) const {
-        return of_torque ? std::abs(axis.torque_of(force, torque, world_from_part)) : force.norm();
-    }
+    double borne(const Vec3& force, const Vec3& torque, const Pose& world_from_part) const;
 };
 
 }  // namespace swage

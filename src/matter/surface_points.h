@@ -50,9 +50,9 @@ class SurfacePoints {
         if (r[1] == kLoose) return {r[0], r[0], r[0], r[0], r[0], r[0], r[0], r[0]};
         return {r[0], r[0] + 1, r[1], r[1] + 1, r[2], r[2] + 1, r[3], r[3] + 1};
     }
-    Vec3 place(std::size_t point) const { return place_[point].cast<double>(); }
+    Vec3 place(std::size_t point) const { return in_doubles(place_[point]); }
     double area(std::size_t point) const { return area_[point]; }
-    Vec3 normal(std::size_t point) const { return normal_[point].cast<double>(); }
+    Vec3 normal(std::size_t point) const { return in_doubles(normal_[point]); }
     // Corners of its cell, a bit each, that blades have left on the point's side of their paths.
     std::uint8_t side(std::size_t point) const { return side_.empty() ? 0xff : side_[point]; }
     void set_side(std::size_t point, std::uint8_t corners);
@@ -66,9 +66,14 @@ class SurfacePoints {
     // Where it is now [m].
     Vec3 position(std::size_t point, const Vec3Array& particles) const {
         const Carriers by = carriers(point);
-        Vec3 x = Vec3::Zero();
-        for (int c = 0; c < 8; ++c) x += by.weight[c] * particles.at(by.corner[c]);
-        return x;
+        double x = 0, y = 0, z = 0;
+        for (int c = 0; c < 8; ++c) {
+            const auto n = static_cast<std::size_t>(by.corner[c]);
+            x += by.weight[c] * particles.x[n];
+            y += by.weight[c] * particles.y[n];
+            z += by.weight[c] * particles.z[n];
+        }
+        return {x, y, z};
     }
     std::size_t bytes() const;
     bool operator==(const SurfacePoints&) const = default;
@@ -80,6 +85,8 @@ class SurfacePoints {
     }
 
   private:
+    static Vec3 in_doubles(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
+
     static constexpr ParticleId kLoose = -1;  // in row[1]: row[0] is the particle
 
     std::vector<std::array<ParticleId, 4>> row_;
