@@ -53,10 +53,18 @@ struct StartSpec {
     Vec3 turn = Vec3::Zero();      // about the middle of its box: axis times angle [rad]
     Vec3 velocity = Vec3::Zero();  // [m/s]
     Vec3 spin = Vec3::Zero();      // about its centre of mass [rad/s]
-    bool moves() const { return velocity != Vec3::Zero() || spin != Vec3::Zero(); }
+    bool moves() const;
 };
 
 struct BodySpec {
+    // Compiled once: a copy is thousands of instructions, which many places make.
+    BodySpec();
+    ~BodySpec();
+    BodySpec(const BodySpec&);
+    BodySpec(BodySpec&&) noexcept;
+    BodySpec& operator=(const BodySpec&);
+    BodySpec& operator=(BodySpec&&) noexcept;
+
     std::string name = "work-piece";  // a file name
     MeshSpec mesh;
     StartSpec start;
@@ -76,17 +84,19 @@ struct BodySpec {
     // Whether the scene says how all of it looks, whatever its file says.
     bool is_painted() const { return color || wears_material || !mesh.texture.empty(); }
     // Of its objects and looks in files: what its mesh is called, where nobody named it.
-    std::string label() const {
-        return name == BodySpec().name && !mesh.file.empty() ? mesh.file.stem().string() : name;
-    }
-    std::vector<const Material*> materials() const {  // its own first
-        std::vector<const Material*> all{&material};
-        for (const InsetSpec& one : inset) all.push_back(&one.material);
-        return all;
-    }
+    std::string label() const;
+    std::vector<const Material*> materials() const;  // its own first
 };
 
 struct StageSpec {
+    // As BodySpec.
+    StageSpec();
+    ~StageSpec();
+    StageSpec(const StageSpec&);
+    StageSpec(StageSpec&&) noexcept;
+    StageSpec& operator=(const StageSpec&);
+    StageSpec& operator=(StageSpec&&) noexcept;
+
     std::string name;  // "1-bend": number and machine, or the user's own; a file name
     MachineSpec machine;
     std::map<std::string, double> parameter;  // only those that the scene gives, SI
@@ -108,6 +118,14 @@ struct OutputSpec {
 };
 
 struct SceneSpec {
+    // As BodySpec.
+    SceneSpec();
+    ~SceneSpec();
+    SceneSpec(const SceneSpec&);
+    SceneSpec(SceneSpec&&) noexcept;
+    SceneSpec& operator=(const SceneSpec&);
+    SceneSpec& operator=(SceneSpec&&) noexcept;
+
     std::filesystem::path file;  // absolute
     std::string name;            // stem of the file
     // Where it was piped in: what was. `file` is then a name in the working directory, no file.
@@ -132,18 +150,10 @@ struct SceneSpec {
         return std::any_of(stage.begin(), stage.end(), test);
     }
     // Whether any of its materials does, or any of its stages.
-    bool breaks() const {
-        return any_material([](const Material& m) { return m.breaks(); });
-    }
-    bool yields() const {
-        return any_material([](const Material& m) { return m.yields(); });
-    }
-    bool damps() const {
-        return any_material([](const Material& m) { return m.damping_ratio > 0; });
-    }
-    bool moves() const {
-        return any_stage([](const StageSpec& one) { return in_motion(one.sim.solver); });
-    }
+    bool breaks() const;
+    bool yields() const;
+    bool damps() const;
+    bool moves() const;
     RenderSettings render;
     OutputSpec output;
     std::vector<Said> said;  // all that it says, with what was set on the command line
