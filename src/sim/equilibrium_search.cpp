@@ -131,6 +131,12 @@ double farthest_astray(const Aggregate& matter, double gone) {
     return kAstray * (gone + kNudge * matter.lattice.spacing);
 }
 
+// How far that is along this motion, if any [spacings].
+double gone_along(const Aggregate& matter, const Vec3Array& motion, const Vec3Array& start) {
+    if (motion.size() == 0) return 0;
+    return gone_by(matter, motion, start) * longest_of(motion) / matter.lattice.spacing;
+}
+
 void look_around(StaticForces& forces, const Drive& to) {
     forces.contacts.find_candidates(forces.matter, to);
     forces.self.meet_anew();
@@ -209,22 +215,29 @@ Relaxation EquilibriumSearch::relax(StaticForces& forces, const StaticMove& move
 }
 
 // What flows and would buckle by its tangent modulus is led aside until it goes by itself.
-bool EquilibriumSearch::lead_aside(Aggregate& matter, StaticMove& move, Relaxation& result) {
+bool EquilibriumSearch::lead_aside(Aggregate& matter, StaticMove& move) {
     if (!matter.yields() || matter.cell_history.empty()) return false;
     const Vec3Array& way = newton_->softest_motion();
     const FlowAside flow(matter, way);
     if (!newton_->buckles_in_flow(flow) || keeps_the_shape(matter, way)) return false;
-    const double gone = gone_by(matter, way, begun_at_);
-    if (std::abs(gone) * longest_of(way) > kLedEnough * matter.lattice.spacing) {
-        result.buckled = result.buckled || std::exchange(is_led_, false);
-        return false;
-    }
-    is_led_ = true;
+    const double gone = gone_along(matter, way, begun_at_);
+    if (std::abs(gone) > kLedEnough) return false;
     move.history = matter.cell_history;
     const double by = std::copysign(kLed * flow.as_far_as_flow(), gone);
     flow.commit(matter, by);
     combine(1, by, way, matter.particle_position);
+    const bool is_far = std::abs(gone_along(matter, led_by_, begun_at_)) > kLedEnough;
+    if (led_by_.size() == 0) set_zero(matter.particle_count(), led_by_);
+    if (!is_far) combine(1, by, way, led_by_);
     return true;
+}
+
+// Whether what was led aside goes beyond so far in this move along that way, by itself or not.
+bool EquilibriumSearch::goes_far_aside(const Aggregate& matter, const StaticMove& move) {
+    const double gone = gone_along(matter, led_by_, begun_at_);
+    const double by = gone_along(matter, led_by_, move.start);
+    if (gone * by < 0) led_by_ = {};
+    return gone * by > 0 && std::abs(gone) > kLedEnough && std::abs(gone - by) <= kLedEnough;
 }
 
 // A body that buckles is moved the way it wants to go, as far as the forces drive it there, and
@@ -268,11 +281,12 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         const NewtonProblem problem = buckling_problem(forces, move.to, accuracy);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
         if (!newton_->buckles(matter, problem, forces.push_measure(move.to))) {
-            const Vec3Array there = x;
-            if (!led && lead_aside(forces.matter, move, result)) {
+            const Vec3Array there = x, led_by = led_by_;
+            if (!led && lead_aside(forces.matter, move)) {
                 led = true;
                 if (!try_again(accuracy, there)) {
                     forces.matter.cell_history = std::exchange(move.history, {});
+                    led_by_ = led_by;
                 }
                 continue;
             }
@@ -300,6 +314,7 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         }
         result.buckled = true;
     }
+    if (result.converged && goes_far_aside(matter, move)) result.buckled = true;
     has_buckled_ = has_buckled_ || (result.converged && result.buckled);
     return result;
 }

@@ -27,7 +27,7 @@ class EquilibriumSearch {
 
     template <typename Io>
     void visit(Io& io, const StaticForces& forces) {  // what steps change, where these are known
-        io(newton_rests_, newton_pause_, enough_hold_, begun_at_, has_buckled_, is_led_);
+        io(newton_rests_, newton_pause_, enough_hold_, begun_at_, has_buckled_, led_by_);
         bool has_coarse = coarse_.has_value();
         io(has_coarse);
         if constexpr (Io::kReads) {
@@ -40,7 +40,8 @@ class EquilibriumSearch {
 
   private:
     Relaxation relax(StaticForces& forces, const StaticMove& move, double accuracy);
-    bool lead_aside(Aggregate& matter, StaticMove& move, Relaxation& result);
+    bool lead_aside(Aggregate& matter, StaticMove& move);
+    bool goes_far_aside(const Aggregate& matter, const StaticMove& move);
     Relaxation solve_smooth(StaticForces& forces, const StaticMove& move, double accuracy);
 
     double tolerance_;
@@ -53,7 +54,7 @@ class EquilibriumSearch {
     double enough_hold_ = 1;    // share of the drag that held nothing back in the last relaxation
     Vec3Array begun_at_;        // positions, when the stage began
     bool has_buckled_ = false;  // since then
-    bool is_led_ = false;       // aside, and has not gone by itself yet
+    Vec3Array led_by_;          // aside, in all, until it comes back; empty: not
 };
 
 }  // namespace swage

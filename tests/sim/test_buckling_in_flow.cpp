@@ -42,18 +42,23 @@ struct Column {
         }
     }
 
-    // By a share of its length. What it bears at each frame's end, over its area [Pa].
-    std::vector<double> press(double share, int frames) {
+    // By a share of its length, back in the last frames. What it bears at each frame's end, over
+    // its area [Pa].
+    std::vector<double> press(double share, int frames, int back = 0) {
         Simulation simulation(matter, apparatus, SimSettings{});
         std::vector<double> borne;
         for (int n = 0; n < frames; ++n) {
             Drive to = drive;
             to.time += 1;
-            to.world_from_grip[1].translation.x() -= share * length / frames;
+            to.world_from_grip[1].translation.x() -=
+                (n < frames - back ? share : -share) * length / frames;
             const FrameReport report = simulation.advance(drive, to);
             drive = to;
             borne.push_back(std::abs(report.load[1].force.x()) / (side * side));
             bends.push_back(bend());
+            is_told.push_back(std::ranges::any_of(report.warning, [](const std::string& line) {
+                return line == "the work-piece buckled: it changed to another shape";
+            }));
         }
         return borne;
     }
@@ -73,6 +78,7 @@ struct Column {
     Apparatus apparatus;
     Drive drive;
     std::vector<double> bends{};
+    std::vector<bool> is_told{};  // that it has buckled
 };
 
 double of_fixed_column(double modulus, int slender) {
@@ -118,6 +124,34 @@ TEST_CASE(
     CHECK(at > 0.95 * least);
     CHECK(at < 1.3 * least);
     CHECK(*std::max_element(borne.begin(), borne.end()) < most);
+}
+
+TEST_CASE("what is led aside is told to have buckled once, when it has gone so far") {
+    const struct {
+        double tangent;
+        int slender, cells, frames;
+    } of[] = {{0.004, 10, 4, 15}, {0.004, 10, 4, 60}, {0.004, 20, 2, 30}, {0.01, 12, 4, 30}};
+    for (const auto& [tangent, slender, cells, frames] : of) {
+        Column column(slender, cells, metal(tangent * kModulus));
+        column.press(0.03, frames, 4);
+        CAPTURE(tangent, slender, cells, frames);
+        const auto told = std::ranges::find(column.is_told, true);
+        REQUIRE(told > column.is_told.begin());
+        REQUIRE(told < column.is_told.end());
+        const std::size_t at = told - column.is_told.begin();
+        CHECK(column.bends[at] > 0.3 * kSpacing);
+        CHECK(column.bends[at - 1] < 0.33 * kSpacing);
+        CHECK(std::ranges::count(column.is_told, true) == 1);
+    }
+}
+
+TEST_CASE("what is led aside and let go before it has gone so far is not told to have buckled") {
+    Column column(10, 4, metal(0.06 * kModulus));
+    column.press(0.03, 60, 6);
+    const double most = *std::ranges::max_element(column.bends);
+    CHECK(most > 0.15 * kSpacing);
+    CHECK(most < 0.3 * kSpacing);
+    CHECK(std::ranges::count(column.is_told, true) == 0);
 }
 
 TEST_CASE("what is short, or is drawn, flows on straight") {
