@@ -389,10 +389,15 @@ bool LoadSet::eases(const Drive& from, const Drive& to) const {
 }
 
 bool LoadSet::is_stirred(const Drive& since, const Drive& now) const {
-    constexpr double kLeast = 1e-6;
-    bool stirred = (gravity(now) - gravity(since)).norm() > kLeast * gravity_.norm();
+    constexpr double kLeast = 1e-6;  // of what is there: a strength may be small and the load large
+    const auto changed = [](double change, double was, double is) {
+        return change > kLeast * std::max(was, is);
+    };
+    const Vec3 was = gravity(since), is = gravity(now);
+    bool stirred = changed((is - was).norm(), was.norm(), is.norm());
     for_each_load([&](std::size_t l, const Load&) {
-        stirred = stirred || std::abs(now.load_strength[l] - since.load_strength[l]) > kLeast;
+        const double before = since.load_strength[l], after = now.load_strength[l];
+        stirred = stirred || changed(std::abs(after - before), std::abs(before), std::abs(after));
     });
     return stirred;
 }

@@ -179,7 +179,8 @@ void MovingBodies::finish_step(const Drive& before, const Drive& now, double ste
 void MovingBodies::put_to_sleep(const Drive& now, MoveOutcome& outcome) {
     std::vector<char> rests(body_.size(), 1);
     for_each_awake([&](std::size_t b) {
-        rests[b] = sleeping_.rests(b, now.time, outcome.body[b].after.kinetic);
+        rests[b] =
+            sleeping_.rests(b, now.time, outcome.body[b].after.kinetic, body_[b].gravity().norm());
     });
     std::vector<std::size_t> group = contact_.groups();
     for (std::size_t b = group.size(); b < body_.size(); ++b) group.push_back(b);

@@ -20,30 +20,27 @@ constexpr double kKinetic = 1e-6;  // of m g a
 
 Sleeping::Sleeping(const std::vector<Aggregate*>& bodies, const SimSettings& settings)
     : asleep_(bodies.size(), 0) {
-    const double g = settings.gravity.norm();
-    can_ = settings.sleep && g > 0;
+    can_ = settings.sleep && settings.gravity.norm() > 0;
     if (!can_) return;
     for (const Aggregate* matter : bodies) {
-        const double a = matter->lattice.spacing;
-        const double fall = std::sqrt(2 * a / g);
-        const double swing = 2 * std::numbers::pi / slowest_frequency(*matter);
         body_.push_back({.matter = matter,
-                         .still = kTimes * std::max(fall, swing),
-                         .farthest = kWay * a,
-                         .most = kKinetic * matter->mass() * g * a,
+                         .mass = matter->mass(),
+                         .swing = 2 * std::numbers::pi / slowest_frequency(*matter),
                          .from = {}});
     }
 }
 
-bool Sleeping::rests(std::size_t body, double now, double kinetic) {
+bool Sleeping::rests(std::size_t body, double now, double kinetic, double gravity) {
     if (!can_) return false;
     Watched& at = body_[body];
-    if (!(kinetic < at.most)) {
+    const double a = at.matter->lattice.spacing;
+    if (!(gravity > 0 && kinetic < kKinetic * at.mass * gravity * a)) {
         at.lies = false;
         return false;
     }
+    const double still = kTimes * std::max(std::sqrt(2 * a / gravity), at.swing);
     const Vec3Array& x = at.matter->particle_position;
-    if (at.lies && farthest_move(at.from, x) <= at.farthest) return now - at.since >= at.still;
+    if (at.lies && farthest_move(at.from, x) <= kWay * a) return now - at.since >= still;
     at.lies = true;
     at.since = now;
     at.from = x;

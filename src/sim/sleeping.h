@@ -3,8 +3,9 @@
 // as a fall over one spacing or its slowest swing takes, whichever is longer,
 //
 //     no particle goes farther than a thousandth of a spacing from where it was,
-//     its kinetic energy stays below a millionth of m g a.
+//     its kinetic energy stays below a millionth of m g a,
 //
+// g the gravity that acts at the time.
 // What rolls or slides slower than a 14,000th of sqrt(g a) is taken as at rest; what is thrown and
 // stands at the top of its way, or swings, is not. Without gravity nothing ever rests.
 #pragma once
@@ -26,8 +27,8 @@ class Sleeping {
     bool is_asleep(std::size_t body) const { return asleep_[body] != 0; }
 
     // A body that holds this kinetic energy [J] is watched; returns whether it has been at rest for
-    // long enough by now [s].
-    bool rests(std::size_t body, double now, double kinetic);
+    // long enough by now [s], for the gravity [m/s2] that acts now.
+    bool rests(std::size_t body, double now, double kinetic, double gravity);
     void put_to_sleep(std::size_t body) { asleep_[body] = 1; }
     void wake(std::size_t body);
 
@@ -40,9 +41,8 @@ class Sleeping {
   private:
     struct Watched {
         const Aggregate* matter;
-        double still;     // it has to lie still for [s]
-        double farthest;  // that it may go in that [m]
-        double most;      // kinetic energy [J]
+        double mass;   // [kg]
+        double swing;  // its slowest takes [s]
         double since = 0;
         bool lies = false;
         Vec3Array from;  // where its particles were then

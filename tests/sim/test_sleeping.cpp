@@ -36,7 +36,9 @@ struct Ground {
     std::unique_ptr<Simulation> simulation;
     Pose floor{Quat::Identity(), Vec3(0, -0.5, 0)};
     double time = 0;
+    double weight = 1;           // gravity's strength
     std::optional<double> load;  // its strength, where there is one
+    std::optional<double> lid;   // the height of the lower side of a plate above, likewise
     FrameReport last;
 
     explicit Ground(const std::vector<double>& heights, bool sleep = true,
@@ -54,11 +56,13 @@ struct Ground {
     Drive drive() const {
         Drive d = still(time);
         d.world_from_tool.push_back(floor);
+        if (lid) d.world_from_tool.push_back({Quat::Identity(), Vec3(0, *lid + 0.5, 0)});
+        d.gravity_strength = weight;
         if (load) d.load_strength.push_back(*load);
         return d;
     }
-    // One frame in which the floor moves by this.
-    const FrameReport& go(double duration, const Vec3& way = Vec3::Zero()) {
+    // One frame in which the floor moves by this, and the lid sinks.
+    const FrameReport& go(double duration, const Vec3& way = Vec3::Zero(), double sinks = 0) {
         if (!simulation) {
             std::vector<Aggregate*> bodies;
             for (Aggregate& m : body) bodies.push_back(&m);
@@ -67,6 +71,7 @@ struct Ground {
         const Drive from = drive();
         time += duration;
         floor.translation += way;
+        if (lid) *lid -= sinks;
         last = simulation->advance(from, drive());
         return last;
     }
@@ -89,7 +94,7 @@ bool rests_by(const Aggregate& m, double until, double kinetic, double gravity =
     settings.gravity = Vec3(0, -gravity, 0);
     Sleeping watch({&lies}, settings);
     bool rests = false;
-    for (int n = 0; n <= 1000; ++n) rests = watch.rests(0, until * n / 1000, kinetic);
+    for (int n = 0; n <= 1000; ++n) rests = watch.rests(0, until * n / 1000, kinetic, gravity);
     return rests;
 }
 
@@ -208,19 +213,93 @@ TEST_CASE("a sleeper wakes when its floor moves or its weight changes") {
     CHECK(ground.body[0].centre().y() > y + 0.05);
 }
 
-TEST_CASE("a sleeper wakes when a load on it changes") {
+TEST_CASE("a sleeper wakes when a load on it changes, or its weight, however large and weak") {
+    const double large = GENERATE(1.0, 1e8);
     Ground ground({0.01});
+    ground.settings.gravity *= large;
+    ground.weight = 1 / large;
     Aggregate& block = ground.body[0];
-    ground.apparatus.load.push_back(push_below(block, 0.9 * block.mass() * 9.81));
+    ground.apparatus.load.push_back(push_below(block, large * 0.9 * block.mass() * 9.81));
     ground.load = 0;
     REQUIRE(ground.settle().asleep == 1);
-    const double x = block.centre().x();
-    Drive pushed = ground.drive();
-    const Drive now = pushed;
-    pushed.time += 0.2;
-    pushed.load_strength = {1};
-    CHECK(ground.simulation->advance(now, pushed).asleep == 0);
-    CHECK(block.centre().x() > x + 1e-3);
+    const Vec3 rest = block.centre();
+    SECTION("a load") {
+        Drive pushed = ground.drive();
+        const Drive now = pushed;
+        pushed.time += 0.2;
+        pushed.load_strength = {1 / large};
+        CHECK(ground.simulation->advance(now, pushed).asleep == 0);
+        CHECK(block.centre().x() > rest.x() + 1e-3);
+    }
+    SECTION("weight") {
+        Drive lighter = ground.drive();
+        const Drive now = lighter;
+        lighter.time += 0.1;
+        lighter.gravity_strength = 0;
+        CHECK(ground.simulation->advance(now, lighter).asleep == 0);
+        CHECK(block.centre().y() > rest.y() + 1e-5);
+    }
+}
+
+TEST_CASE("a load or weight has changed from more than a millionth of what it was on") {
+    const Aggregate block = make_block(3, 2, 3, 0.1, kSoft);
+    Apparatus apparatus;
+    apparatus.load.push_back(push_below(block, 1));
+    SimSettings settings = motion_settings();
+    settings.gravity = Vec3(0, -9.81, 0);
+    const LoadSet pushes(apparatus, settings);
+    const auto is_stirred = [&](double load, double load_now, double weight, double weight_now) {
+        Drive since = still(0), now = still(1);
+        since.load_strength = {load}, now.load_strength = {load_now};
+        since.gravity_strength = weight, now.gravity_strength = weight_now;
+        return pushes.is_stirred(since, now);
+    };
+    for (const double s : {1.0, -1e-9, 1e9}) {
+        CAPTURE(s);
+        const double same = s * (1 + 0.9e-6), other = s * (1 + 1.1e-6);
+        CHECK_FALSE(is_stirred(s, same, 1, 1));
+        CHECK_FALSE(is_stirred(same, s, 1, 1));
+        CHECK(is_stirred(s, other, 1, 1));
+        CHECK(is_stirred(other, s, 1, 1));
+        CHECK_FALSE(is_stirred(1, 1, s, same));
+        CHECK(is_stirred(1, 1, s, other));
+        CHECK(is_stirred(0, s, 1, 1));
+        CHECK(is_stirred(1, 1, s, 0));
+    }
+    CHECK_FALSE(is_stirred(0, 0, 0, 0));
+}
+
+TEST_CASE("what falls under a millionth of its gravity does not sleep on its way") {
+    const auto fall = [](bool sleep) {
+        Ground ground({0.1}, sleep);
+        ground.weight = 1e-6;
+        const double from = ground.body[0].centre().y();
+        for (int f = 0; f < 4; ++f) CHECK(ground.go(1.5).asleep == 0);
+        return from - ground.body[0].centre().y();
+    };
+    const double fallen = fall(true);
+    CHECK(fallen == fall(false));
+    CHECK(fallen == Approx(0.5 * 9.81e-6 * 36).epsilon(1e-6));
+}
+
+TEST_CASE("a sleeper wakes when a tool comes down on it from far above, and bears it as if awake") {
+    const auto press = [](bool sleep) {
+        auto ground = std::make_unique<Ground>(std::vector<double>{0}, sleep);
+        ground->apparatus.tool.push_back({"lid", BoxShape{Vec3(10, 1, 10), 0}, 0.4});
+        ground->lid = 0.7;  // five cells above it
+        while (ground->time < 9) ground->go(0.5);
+        CHECK(ground->last.asleep == (sleep ? 1 : 0));
+        ground->go(0.5, Vec3::Zero(), 0.51);
+        CHECK(ground->last.asleep == 0);
+        ground->go(0.5);
+        return ground;
+    };
+    const auto sleeps = press(true), wakes = press(false);
+    const double force = -sleeps->last.load[1].force.y();
+    CHECK(force > 100);
+    CHECK(force == Approx(-wakes->last.load[1].force.y()).epsilon(0.01));
+    CHECK(sleeps->last.work == Approx(wakes->last.work).epsilon(0.01));
+    CHECK((sleeps->body[0].centre() - wakes->body[0].centre()).norm() < 1e-3 * 0.1);
 }
 
 TEST_CASE("what a body still trembles by as it falls asleep stands in its books as damped") {
@@ -253,6 +332,8 @@ TEST_CASE("what lies still sleeps after ten times what it takes to fall by a cel
     CHECK_FALSE(rests_by(block, 9.9 * fall, 0));
     CHECK(rests_by(block, 10.1 * fall, 0));
     CHECK_FALSE(rests_by(block, 1000, 0, 0));  // without gravity nothing lies
+    CHECK(rests_by(block, 10.1 * 100 * fall, 0, 9.81e-4));
+    CHECK_FALSE(rests_by(block, 9.9 * 100 * fall, 0, 9.81e-4));
     const Aggregate reed = make_block(40, 1, 1, 0.01, kSpringy);
     const double swing = 2 * std::numbers::pi / slowest_frequency(reed);
     REQUIRE(swing > 5 * std::sqrt(2 * 0.01 / 9.81));
@@ -290,7 +371,7 @@ TEST_CASE("what trembles, slides or creeps does not sleep") {
         Sleeping watch({&block}, settings);
         for (int n = 0; n <= 1000; ++n) {
             block.particle_position.x[5] += 1e-6;  // 0.1 mm a second
-            REQUIRE_FALSE(watch.rests(0, 0.01 * n, 0));
+            REQUIRE_FALSE(watch.rests(0, 0.01 * n, 0, 9.81));
         }
     }
 }
