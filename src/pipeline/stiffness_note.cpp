@@ -32,6 +32,54 @@ void keep_worse(std::optional<LimitedPoints>& worst, LimitedPoints&& points) {
     if (!worst || points.share() < worst->share()) worst = std::move(points);
 }
 
+bool are_alike(const Material& one, const Material& other) {
+    return one.mechanics == other.mechanics && one.young_modulus == other.young_modulus &&
+           one.poisson_ratio == other.poisson_ratio;
+}
+
+// Whether steps leave both as much, against whatever they press: all that counts is equal.
+bool are_alike(const Aggregate& one, const Aggregate& other) {
+    if (one.lattice.spacing != other.lattice.spacing || one.particle_mass != other.particle_mass ||
+        one.cell_material != other.cell_material ||
+        one.material_count() != other.material_count() || !(one.surface == other.surface)) {
+        return false;
+    }
+    for (std::size_t m = 0; m < one.material_count(); ++m) {
+        if (!are_alike(one.material_at(m), other.material_at(m))) return false;
+    }
+    for (std::size_t d = 0; d < one.connection.size(); ++d) {
+        if (one.connection[d].weight.all() != other.connection[d].weight.all()) return false;
+    }
+    return true;
+}
+
+// Of all pairs that have least. Many bodies are mostly copies of few.
+std::optional<LimitedPoints> worst_between(const std::vector<NamedMatter>& bodies,
+                                           const SimSettings& settings, double step) {
+    struct Kind {
+        MeetingBody body;
+        bool several = false;
+    };
+    std::vector<Kind> kind;
+    for (const NamedMatter& body : bodies) {
+        const auto same = std::find_if(kind.begin(), kind.end(), [&](const Kind& known) {
+            return are_alike(known.body.matter, *body.matter);
+        });
+        if (same == kind.end()) {
+            kind.push_back({*body.matter});
+        } else {
+            same->several = true;
+        }
+    }
+    std::optional<LimitedPoints> worst;
+    for (std::size_t a = 0; a < kind.size(); ++a) {
+        for (std::size_t b = kind[a].several ? a : a + 1; b < kind.size(); ++b) {
+            keep_worse(worst, points_between(kind[a].body, kind[b].body, settings, step));
+        }
+    }
+    return worst;
+}
+
 double shorter_by(const LimitedPoints& points) {
     double low = 1, high = 1;
     while (points.share(high) < kWhole && high < kShortest) high *= 2;
@@ -58,14 +106,11 @@ std::string stiffness_note(const StageSpec& stage, const std::vector<NamedMatter
     if (sim.solver != Solver::explicit_steps || !(asks || asks_of_grips)) return {};
     const double step = step_of(stage, bodies);
     std::optional<LimitedPoints> tools, between, grips;
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        const Aggregate& matter = *bodies[b].matter;
+    if (asks) between = worst_between(bodies, sim, step);
+    for (const NamedMatter& body : bodies) {
+        const Aggregate& matter = *body.matter;
         if (asks && !stage.machine.tool.empty()) {
             keep_worse(tools, points_at_tools(matter, sim, step));
-        }
-        // Of many bodies, so many pairs.
-        if (asks && b > 0) {
-            keep_worse(between, points_between(*bodies[b - 1].matter, matter, sim, step));
         }
         if (asks_of_grips && !stage.machine.grip.empty()) {
             keep_worse(grips, points_in_grips(matter, sim, step));

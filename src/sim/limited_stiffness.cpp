@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "matter/touch_points.h"
 #include "sim/surface_forces.h"
 #include "sim/surface_modulus.h"
 
@@ -53,14 +52,14 @@ double share_borne(const Aggregate& matter, const SurfacePoints& points,
     return limited.share();
 }
 
-LimitedPoints one_way(const Aggregate& from, const Aggregate& onto, const SimSettings& settings,
+LimitedPoints one_way(const MeetingBody& from, const MeetingBody& onto, const SimSettings& settings,
                       double most) {
-    const TouchPoints touch(from, false), others(onto, false);
     const double scale = settings.stiffness_of_contacts();
+    const SurfacePoints& points = from.touch.points();
     LimitedPoints limited;
-    limited.asked = stiffness_on_body(from, touch.points(), onto, scale, settings.solver);
-    limited.stiffest = stiffest_on_body(from, touch.points(), limited.asked, onto, others.points(),
-                                        scale, settings.solver, most);
+    limited.asked = stiffness_on_body(from.matter, points, onto.matter, scale, settings.solver);
+    limited.stiffest = stiffest_on_body(from.matter, points, limited.asked, onto.matter,
+                                        onto.touch.points(), scale, settings.solver, most);
     return limited;
 }
 
@@ -121,7 +120,7 @@ LimitedPoints points_in_grips(const Aggregate& matter, const SimSettings& settin
                     kGripShare / (step * step));
 }
 
-LimitedPoints points_between(const Aggregate& one, const Aggregate& other,
+LimitedPoints points_between(const MeetingBody& one, const MeetingBody& other,
                              const SimSettings& settings, double step) {
     const double most = kMeetShare / (step * step);
     LimitedPoints both = one_way(one, other, settings, most);

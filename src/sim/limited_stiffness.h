@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "matter/touch_points.h"
 #include "sim/settings.h"
 
 namespace swage {
@@ -44,11 +45,18 @@ struct LimitedPoints {
     double share(double shorter = 1) const;
 };
 
+// A body, and with what it meets others.
+struct MeetingBody {
+    MeetingBody(const Aggregate& body) : matter(body), touch(body, false) {}
+    const Aggregate& matter;
+    TouchPoints touch;
+};
+
 // Of a body's whole surface as it is now, in steps of this length [s]: under tools that say nothing
 // of their own; in grips; and where it meets another and that meets it.
 LimitedPoints points_at_tools(const Aggregate& matter, const SimSettings& settings, double step);
 LimitedPoints points_in_grips(const Aggregate& matter, const SimSettings& settings, double step);
-LimitedPoints points_between(const Aggregate& one, const Aggregate& other,
+LimitedPoints points_between(const MeetingBody& one, const MeetingBody& other,
                              const SimSettings& settings, double step);
 
 }  // namespace swage

@@ -38,3 +38,27 @@ TEST_CASE("a stiffness that steps do not leave is told, with the step_safety tha
     stage.sim.solver = Solver::quasistatic;
     CHECK(stiffness_note(stage, two).empty());
 }
+
+TEST_CASE(
+    "of several bodies the pair that steps leave least is told, in whatever order they stand") {
+    const auto block = [](double modulus, double density) {
+        return test::make_block(3, 3, 3, 0.1,
+                                {.young_modulus = modulus, .poisson_ratio = 0, .density = density});
+    };
+    const Aggregate stiff = block(5e6, 1000), soft = block(5e4, 1000), heavy = block(4e6, 900);
+    StageSpec stage;
+    stage.sim.solver = Solver::explicit_steps;
+    stage.sim.contact_stiffness = 20;
+    const auto told = [&](const std::vector<const Aggregate*>& bodies) {
+        std::vector<NamedMatter> named;
+        for (const Aggregate* matter : bodies) named.push_back({"block", matter});
+        return stiffness_note(stage, named);
+    };
+    const std::string note = told({&stiff, &heavy, &soft});
+    CHECK(note.find("between bodies") != std::string::npos);
+    CHECK(told({&stiff, &soft, &heavy}) == note);
+    CHECK(told({&stiff, &soft, &heavy, &soft, &soft}) == note);
+    // Two that are alike may meet too.
+    CHECK_FALSE(told({&stiff, &soft, &stiff}).empty());
+    CHECK(told({&stiff, &soft}).empty());
+}
