@@ -137,9 +137,9 @@ std::vector<LoadSum> Simulation::Rooms::load_sums(const Drive& now) const {
             if (apparatus.load[n].body == static_cast<int>(b)) all[n] = more[n];
         }
         if (!pushes(b).has_gravity()) continue;
+        // Whose centre does not jump: of several bodies nothing is left alone.
         const double own = body[b].matter->mass();
         all.back().centre = (mass * all.back().centre + own * more.back().centre) / (mass + own);
-        all.back().jump = (mass * all.back().jump + own * more.back().jump) / (mass + own);
         all.back().force += more.back().force;
         mass += own;
     }

@@ -352,3 +352,26 @@ TEST_CASE("what falls on a cut edge is thrown back as from a body that ends ther
         CHECK(std::abs(beside.remainder) < 1e-3);
     }
 }
+
+TEST_CASE("what another cell carries since a cut began the move where it lies, if nothing moved") {
+    Aggregate block = make_block(6, 3, 3, kA, kSoft);
+    const SurfacePoints as_molded = block.surface;
+    Apparatus apparatus;
+    apparatus.tool.push_back({"tank", BoxShape{Vec3(20, 20, 20), 0}, 0.3});
+    Drive now = drive_of(apparatus, 0, 1);
+    now.world_from_tool.emplace_back();
+    ToolPairs pairs(block, apparatus, SimSettings{}, 0);
+    deform(block, crooked);
+    pairs.begin_move(block, now);
+    sever_plane(block, Vec3(0.3 * kA, 0, 0), Vec3::UnitX());
+    pairs.connections_changed(block);
+    pairs.find_candidates(block, now);
+    int carried_anew = 0;
+    for (const ToolPairs::Pair& pair : pairs) {
+        const auto point = static_cast<std::size_t>(pair.point);
+        carried_anew +=
+            point < as_molded.size() && pairs.points().row(point) != as_molded.row(point);
+        CHECK((pairs.start_place(pair) - pairs.place(pair, block)).norm() < 1e-12);
+    }
+    CHECK(carried_anew > 0);
+}

@@ -441,3 +441,32 @@ TEST_CASE("a brittle core that cuts cells breaks in a fall, and no energy comes 
     }
     CHECK(fracture > 0);
 }
+
+TEST_CASE("branches of what has softened hold less, from the first and with an inset as without") {
+    const Aggregate sound = make_block(3, 2, 2, 0.01, kWeak);
+    Aggregate soft = sound;
+    LatticeForces forces(soft, Excess::lives_on);
+    const double onset = kStrength / kModulus;
+    for (double strain = 0.5 * onset; strain < 2 * onset; strain *= 1.1) {
+        for (std::size_t p = 0; p < soft.particle_count(); ++p) {
+            const Vec3 x = soft.particle_reference.at(p);
+            soft.particle_position.set(p, {(1 + strain) * x.x(), x.y(), x.z()});
+        }
+        forces.commit(soft);
+        forces.crack(soft);
+    }
+    Aggregate with_inset = soft;
+    with_inset.inset.push_back(kWeak);
+    with_inset.cell_material.assign(soft.cell_fill.size(), 0);
+    with_inset.cell_material[0] = 1;
+    const auto held = [](const Aggregate& m) {
+        LatticeForces lattice(m, Excess::lives_on);
+        const LatticeSweep& sweep = lattice.sweep(m, 0);
+        const DampingBranches branches = damping_branches(0.02, 1e3, 1e4);
+        return sweep.branch_energy(m, branches,
+                                   std::vector<float>(sweep.branch_floats(branches.count), 1e-3f));
+    };
+    CHECK(held(soft) < 0.9 * held(sound));
+    CHECK(held(soft) > 0.1 * held(sound));
+    CHECK(held(with_inset) == Approx(held(soft)).epsilon(1e-5));
+}

@@ -4,7 +4,9 @@
 #include <functional>
 
 #include "sim/advance.h"
+#include "sim/moving_body.h"
 #include "sim/surface_drag.h"
+#include "sim/vector_sums.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
@@ -355,4 +357,45 @@ TEST_CASE("damping does not hold what flows: a body drawn to twice its length lo
         CHECK(drawn.given < 0.04 * drawn.plastic);
         CHECK(drawn.stored < 0.002 * drawn.plastic);
     }
+}
+
+TEST_CASE(
+    "what flows takes its branches along beside an inset that yields late, as it does alone") {
+    Material material = springy(0.05), late = springy(0);
+    material.yield_stress = 1e4;
+    late.yield_stress = 30 * material.yield_stress;
+    Aggregate alone = make_block(11, 3, 2, 0.1, material);
+    Aggregate beside = alone;
+    beside.inset.push_back(late);
+    beside.cell_material.assign(beside.cell_fill.size(), 0);
+    beside.cell_material[0] = 1;
+    const double given = flow_steadily(alone, 0.3, 3000).given;
+    CHECK(given > 0);
+    // Its neighbours' branches are its own in part; did they fade as late, it would be 3.6 times.
+    CHECK(flow_steadily(beside, 0.3, 3000).given == Approx(given).epsilon(0.15));
+}
+
+TEST_CASE("the drag on what broke in steps that are taken back is as it was before") {
+    Material weak = springy(0);
+    weak.strength = 1e4, weak.toughness = 10;
+    Aggregate m = make_block(4, 3, 2, 0.1, weak);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_velocity.set(p, Vec3(3, -1, 2) + m.particle_reference.at(p));
+    }
+    SimSettings settings = motion_settings();
+    settings.medium_density = 1000;
+    const Apparatus nothing;
+    MovingBody body(m, 0, nothing, settings);
+    BodyOutcome outcome(nothing, 0);
+    body.find_forces(still(0), 0, outcome);
+    const Vec3Array before = body.force();
+    MovingBody::State state;
+    body.save(state);
+    break_layer(m, 1);
+    body.connections_changed(still(0));
+    body.find_forces(still(0), 0, outcome);
+    CHECK(farthest_move(before, body.force()) > 0);
+    body.restore(state, outcome);
+    body.find_forces(still(0), 0, outcome);
+    CHECK(farthest_move(before, body.force()) == 0);
 }

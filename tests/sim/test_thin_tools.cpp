@@ -176,6 +176,34 @@ TEST_CASE("a tool that points have gone through at once is named, and one that t
     if (is_through) CHECK(told[0].find("gone through plate at once") != std::string::npos);
 }
 
+TEST_CASE("what came to be deep in a thin tool is held for one cell more, as any other") {
+    Aggregate block = make_block(4, 4, 4, kCell, kSpringy);
+    Apparatus apparatus;
+    apparatus.tool.push_back({"plate", BoxShape{kCell * Vec3(2.8, 1.4, 2.8), 0}, 0});
+    RestingContacts contacts(block, apparatus, {});
+    // Its middle layer, which breaks, lies 0.6 cells below the upper side.
+    Drive drive = still(0);
+    drive.world_from_tool.push_back({Quat::Identity(), Vec3(0, -0.6 * kCell, 0)});
+    const auto go = [&](double by) {
+        contacts.begin_move(block, drive);
+        for (double& y : block.particle_position.y) y -= by;
+        contacts.find_candidates(block, drive);
+        contacts.commit(block, drive);
+        return contacts.loads(block, drive)[0];
+    };
+    contacts.begin_move(block, drive);
+    contacts.find_candidates(block, drive);
+    break_layer(block, 1);
+    contacts.connections_changed(block);
+    CHECK(go(0).contacts == 0);
+    CHECK(go(0.05 * kCell).penetration == Approx(0.05 * kCell));
+    const bool is_held = GENERATE(true, false);
+    const PartSum then = go((is_held ? 0.9 : 1.1) * kCell);
+    CHECK((then.contacts > 0) == is_held);
+    if (is_held) CHECK(then.penetration == Approx(0.95 * kCell));
+    CHECK(contacts.take_pierced().empty() == is_held);
+}
+
 TEST_CASE("a point is held by the side of a tool that it came in by, until it has slid off it") {
     const Shape plate = BoxShape{Vec3(0.01, 1, 1), 0};
     const EntryReach reach{0.0125, 0.1};
