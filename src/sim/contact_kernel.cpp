@@ -111,11 +111,11 @@ struct ContactWay::Kernel {
     }
 
     // Of its depth, what nobody has pressed: that does not count.
-    SWAGE_INLINE void take_off_sunk(const ContactMemory& last, double step, double hold,
-                                    Meeting& at) const {
+    SWAGE_INLINE void take_off_sunk(const ContactMemory& last, bool is_new, double step,
+                                    double hold, Meeting& at) const {
         const double stretch = at.stretch(), whole = stretch * at.depth();
         double sunk = last.sunk;
-        if (last.is_new) {
+        if (is_new) {
             const double pressed = last.history.touches ? last.pressed : 0;
             const double approach = way.is_static() ? 0 : std::max(0.0, -dot3(at.now, at.normal));
             sunk = std::max(sunk, whole - pressed - step * stretch * approach);
@@ -127,8 +127,8 @@ struct ContactWay::Kernel {
 
     // All that does not depend on forces.
     SWAGE_INLINE void prepare(const Contact& contact, const ContactMemory& last,
-                              const CellCorners& corner, const CellGradient& gradient, double step,
-                              Meeting& at, Chunk& sums, ContactHeld& sum) const {
+                              const CellCorners& corner, const CellGradient& gradient, bool is_new,
+                              double step, Meeting& at, Chunk& sums, ContactHeld& sum) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
         at.now = Vec4{};
         for (int c = 0; c < contact.carriers; ++c) {
@@ -137,7 +137,9 @@ struct ContactWay::Kernel {
         for (int c = 0; c < 8; ++c) at.now -= weight[c] * corner.now[c]->speed;
         sums.took -= dot3(at.now, vec4(contact.dashed));
         const double hold = way.hold_[contact.point];
-        if (at.is_known() && (last.is_new || last.sunk > 0)) take_off_sunk(last, step, hold, at);
+        if (at.is_known() && (is_new || last.sunk > 0)) {
+            take_off_sunk(last, is_new, step, hold, at);
+        }
         if (!at.meets()) return;
         const double k = at.stiffness();
         const double push = spring_push(k, at.depth(), hold);
@@ -171,6 +173,14 @@ struct ContactWay::Kernel {
         at.spring[3] = k;
         sum.now += 0.5 / k * dot3(at.spring, at.spring);
         if (push > k * at.depth()) sum.now += push * (at.depth() - push / k);
+    }
+
+    // Whether it has come to another cell beside which it lies, as before a cut: how deep it is
+    // said to be is then another cell's guess, which may jump.
+    bool hops(const Contact& contact, CellId was) const {
+        return contact.cell != was && !way.is_static() &&
+               ((contact.place.array() < -kSlack).any() ||
+                (contact.place.array() > 1 + kSlack).any());
     }
 
     // Whether an earlier contact of its point has come into the same cell by another way: of one
@@ -208,7 +218,8 @@ struct ContactWay::Kernel {
             result.is_met = result.is_met || (at.meets() && !last.history.touches);
             if (!at.is_known()) held.gone += last.stored;
             if (at.meets() || last.history.touches || !contact.dashed.isZero(0)) {
-                prepare(contact, last, corner, gradient, step, at, result, held);
+                prepare(contact, last, corner, gradient, last.is_new || hops(contact, was), step,
+                        at, result, held);
                 if (at.is_known() && !at.meets()) held.gone += last.bound;
             }
             if (kOwn) {

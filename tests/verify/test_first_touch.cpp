@@ -4,8 +4,10 @@
 
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
+#include "sim/body_contact.h"
 #include "sim/cell_place.h"
 #include "tests/catch.h"
+#include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
 
 using namespace swage;
@@ -141,4 +143,40 @@ TEST_CASE("where a cut meets a body's surface depth does not jump from one cell 
     int places = 0;
     CHECK(worst_jump("calf", 2.3, lean, places) < 0.05);
     CHECK(places > 500);
+}
+
+TEST_CASE("what slides from one cell to the next beside a cut is not pressed in by another guess") {
+    MoldSettings settings;
+    settings.across = 5;
+    Aggregate matter = mold(make_shape("calf", {}).mesh, {}, settings);
+    const double a = matter.lattice.spacing;
+    test::sever_plane(matter, Vec3(2.3 * a, 0, 0), Vec3::UnitX());
+    // Where a sliver ends, that cell says that a place lies outside and the next one that it is in.
+    const Vec3i site(10, 8, 3);
+    Aggregate block = test::make_block(1, 1, 1, 0.1 * a, {});
+    const auto stand = [&](double x) {
+        const Vec3 low = matter.lattice.origin + a * (site.cast<double>() + Vec3(x, 0.49, 1.065));
+        for (std::size_t p = 0; p < block.particle_count(); ++p) {
+            const Vec3 at = block.particle_reference.at(p) - block.particle_reference.at(0) + low;
+            block.particle_position.set(p, at);
+        }
+    };
+    SimSettings sim;
+    sim.solver = Solver::explicit_steps;
+    BodyContact contact({&matter, &block}, sim);
+    const std::vector<char> awake = {0, 0};
+    std::vector<Vec3Array> force(2);
+    const auto stored = [&] {
+        force[0].resize(matter.particle_count()), force[1].resize(block.particle_count());
+        std::vector<ContactSums> sums;
+        contact.add_forces({&force[0], &force[1]}, Vec3::Zero(), 1e-6, awake, sums);
+        contact.commit(awake);
+        return sums[0].stored + sums[1].stored;
+    };
+    stand(0.85);
+    contact.renew_all(awake);
+    REQUIRE(contact.candidates() > 0);
+    const double grazes = stored();
+    stand(1.01);  // nobody has pushed it: it has no speed
+    CHECK(stored() < 2 * grazes);
 }
