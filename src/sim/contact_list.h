@@ -37,9 +37,10 @@ struct ContactMemory {
     ImpactHistory history{};
     double stored = 0;  // in its springs, were its way alone [J]
     double bound = 0;   // of that, what is lost when it parts; 0 where it does not touch
-    // Where matter has broken, or a cell turned inside out has held nothing for a while, a point
-    // may be deeper in what lies there than it can have gone: nobody has pressed it in. That much
-    // of the depth does not count until it has come out again. Depths as at rest [m].
+    // Where matter has broken, a cell turned inside out has held nothing for a while, or another
+    // cell tells the depth of what lies beside it, a point may be deeper there than it can have
+    // gone: nobody has pressed it in. That much of the depth does not count until it has come out
+    // again. Depths as at rest [m].
     double sunk = 0, pressed = 0;  // pressed: what counted
     // Share of its stiffness that is left since a cell was squeezed so thin that no step could have
     // followed the whole.
