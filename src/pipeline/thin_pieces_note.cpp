@@ -28,11 +28,12 @@ std::string note_of(const std::vector<WorkPiece>& bodies, const WorkPiece& body)
     for (std::size_t p = 0; p < matter.particle_count(); ++p) {
         if (is_thin[std::size_t(pieces.particle_piece[p])]) mass += matter.particle_mass[p];
     }
-    if (count < 2 || mass < kLittle * matter.mass()) return {};
+    if (mass < kLittle * matter.mass()) return {};
     return fmt::format(
-        "{} of the {} pieces of {} hold no whole cell: they meet tools and whole cells, but sink "
-        "into each other; smaller cells, or cuts further apart, avoid that",
-        count, pieces.count, name_among(bodies, body));
+        "{} of the {} pieces of {} {} no whole cell: other pieces sink into {} by up to half a "
+        "cell{}; smaller cells, or cuts further apart, avoid that",
+        count, pieces.count, name_among(bodies, body), count == 1 ? "holds" : "hold",
+        count == 1 ? "it" : "them", count == 1 ? "" : ", and they into each other wholly");
 }
 
 }  // namespace

@@ -28,10 +28,13 @@ std::vector<std::string> told_of(const std::vector<int>& cut_cells, bool meet = 
 TEST_CASE("pieces that blades left no whole cell of are told of where pieces are to meet") {
     const std::vector<std::string> told = told_of({3, 4, 5});
     REQUIRE(told.size() == 1);
-    CHECK(told[0].find("2 of the 4 pieces of the work-piece hold no whole cell: they meet tools "
-                       "and whole cells, but sink into each other") == 0);
+    CHECK(told[0].find("2 of the 4 pieces of the work-piece hold no whole cell: other pieces sink "
+                       "into them by up to half a cell, and they into each other wholly; ") == 0);
+    const std::vector<std::string> single = told_of({3, 4});
+    REQUIRE(single.size() == 1);
+    CHECK(single[0].find("1 of the 3 pieces of the work-piece holds no whole cell: other pieces "
+                         "sink into it by up to half a cell; ") == 0);
     CHECK(told_of({3, 5, 7}).empty());  // a whole cell in each
-    CHECK(told_of({3, 4}).empty());     // a single one meets whole cells
     CHECK(told_of({}).empty());
     CHECK(told_of({3, 4, 5}, false).empty());
     Material breaks;
