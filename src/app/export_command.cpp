@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/stopwatch.h"
 #include "base/text.h"
+#include "pipeline/part_look.h"
 #include "pipeline/render_record.h"
 #include "pipeline/run_record.h"
 #include "pipeline/usd_export.h"
@@ -44,6 +45,7 @@ int export_run(const ExportArguments& given) {
         fail(ExitCode::command_line, "{}: only .usda can be written", file.string());
     }
     const FrameStore store(RunDirectory::store_in(run));
+    refuse_unknown_parts(store, scene.render);
     const FrameRange frames = wanted_frames(given.frames, scene.render, store.frame_count());
     const int first_frame = scene.render.first_frame;
     Stopwatch watch;

@@ -8,6 +8,7 @@
 #include "base/stopwatch.h"
 #include "base/text.h"
 #include "pipeline/draw.h"
+#include "pipeline/part_look.h"
 #include "pipeline/render_directory.h"
 #include "pipeline/render_record.h"
 #include "pipeline/run_record.h"
@@ -72,6 +73,7 @@ int render(const RenderArguments& given) {
     const Json record = record_of_run(run);
     const FrameStore store(RunDirectory::store_in(run));
     const RenderSettings settings = settings_of(given, record);
+    refuse_unknown_parts(store, settings);
     const FrameRange frames = wanted_frames(given.frames, settings, store.frame_count());
 
     // The run's own pictures stay what its scene says they are.
@@ -103,6 +105,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
         app, "render", "Draw a finished run again without simulating it",
         "  swage render renders/calf-line --camera-azimuth 90 --size 1920x1080 --out /tmp/side\n"
         "  swage render renders/calf-line --frames 1 --no-film --no-tools\n"
+        "  swage render renders/calf-line --hide left,right --frames 1-40\n"
         "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n"
         "  swage render renders/calf-line --passes depth,matte --out /tmp/layers\n"
         "  swage render renders/calf-line --passes beauty,motion --first-frame 1001\n"

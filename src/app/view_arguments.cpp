@@ -81,6 +81,8 @@ void set_view(const ViewArguments& given, RenderSettings& settings) {
         settings.camera.assign(1, key);
     }
     if (!given.up.empty()) settings.up = up_named(given.up);
+    if (!given.hide.empty()) settings.hide = given.hide;
+    if (given.hide == std::vector<std::string>{"none"}) settings.hide.clear();
     if (given.light_azimuth) settings.light.azimuth = *given.light_azimuth * kDegree;
     if (given.light_elevation) settings.light.elevation = *given.light_elevation * kDegree;
 }
@@ -146,6 +148,12 @@ void add_view_arguments(CLI::App& command, ViewArguments& given) {
     command.add_option("--field-of-view", given.field_of_view, "vertical field of view")
         ->check(kFinite & CLI::Range(1.0, 170.0))
         ->type_name("DEG");
+    command
+        .add_option("--hide", given.hide,
+                    "names of tools, grips and blades that are left out, none: of none (default: "
+                    "as in the scene); of repeated ones NAME hides all, NAME_2 the second")
+        ->delimiter(',')
+        ->type_name("LIST");
     command
         .add_option("--size", given.size, "size of a still in pixels (default: as in the scene)")
         ->type_name("WxH")

@@ -18,6 +18,7 @@ struct ViewArguments {
     std::optional<double> light_azimuth, light_elevation;  // likewise
     std::vector<double> eye, target;                       // [m]
     bool follow = false, no_follow = false;
+    std::vector<std::string> hide;  // names of parts, or "none"
 };
 
 // CLI::Range lets "nan" pass.

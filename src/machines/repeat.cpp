@@ -59,4 +59,12 @@ MachineSpec with_single_parts(MachineSpec machine, const Variables& known) {
     return machine;
 }
 
+bool is_called(std::string_view part, std::string_view name) {
+    if (!part.starts_with(name)) return false;
+    part.remove_prefix(name.size());
+    if (part.empty()) return true;
+    return part.size() > 1 && part.front() == '_' &&
+           part.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
 }  // namespace swage

@@ -2,6 +2,8 @@
 // Parts of a machine that stand there several times.
 #pragma once
 
+#include <string_view>
+
 #include "machines/machine_spec.h"
 #include "machines/motion.h"
 
@@ -13,5 +15,8 @@ constexpr int kMostRepeats = 100;
 // already stays. `known`: the parameters that `repeat` may use. Throws ParameterError, of the first
 // that it uses, where it is no whole number from 0 to kMostRepeats.
 MachineSpec with_single_parts(MachineSpec machine, const Variables& known);
+
+// Whether a single part is called that: NAME_2 is by its own name and, as one of several, by NAME.
+bool is_called(std::string_view part, std::string_view name);
 
 }  // namespace swage

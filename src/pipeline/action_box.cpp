@@ -9,6 +9,7 @@
 #include "base/math.h"
 #include "base/portable_math.h"
 #include "geometry/disjoint_sets.h"
+#include "pipeline/part_look.h"
 
 namespace swage {
 
@@ -190,10 +191,11 @@ std::vector<Vec3> calm_way(const std::vector<Box>& skin, double calm) {
 struct Extents {
     std::vector<Box> skin;
     std::vector<Outline> outline;                // of that
-    std::vector<std::vector<Vec3>> tool_corner;  // of the boxes of all tools
+    std::vector<std::vector<Vec3>> tool_corner;  // of the boxes of all tools that are seen
 };
 
-Extents extents_of(const FrameStore& store, const Quat& drawn_from_world) {
+Extents extents_of(const FrameStore& store, const RenderSettings& settings,
+                   const Quat& drawn_from_world) {
     Extents extents;
     FramedSkin framed_skin(store);
     std::vector<std::vector<Box>> part_box;  // of each machine's parts, in their own frames
@@ -201,7 +203,7 @@ Extents extents_of(const FrameStore& store, const Quat& drawn_from_world) {
         part_box.emplace_back();
         for (const DrawnPart& part : store.machine(m)) {
             // An endless floor has no corner that the picture would have to show.
-            const bool frames = part.finish != Finish::endless;
+            const bool frames = part.finish != Finish::endless && look_of(part, settings);
             part_box.back().push_back(frames ? box_of(part.surface.position) : Box());
         }
     }
@@ -228,7 +230,7 @@ Extents extents_of(const FrameStore& store, const Quat& drawn_from_world) {
 }
 
 // Seen from where the bodies are in each frame. Of tools as much counts as lies near them then.
-FramedAction framed_along(const Extents& extents, bool tools, double calm) {
+FramedAction framed_along(const Extents& extents, double calm) {
     FramedAction framed;
     framed.way = calm_way(extents.skin, calm);
     Outline all;
@@ -240,7 +242,6 @@ FramedAction framed_along(const Extents& extents, bool tools, double calm) {
         const Box& skin = extents.skin[f];
         if (skin.empty()) continue;
         for (const Vec3& p : extents.outline[f].points()) add(p - framed.way[f]);
-        if (!tools) continue;
         const Vec3 reach = Vec3::Constant(kReach * skin.size().maxCoeff());
         for (const Vec3& p : extents.tool_corner[f]) {
             const Vec3 near = p.cwiseMax(skin.low - reach).cwiseMin(skin.high + reach);
@@ -253,9 +254,9 @@ FramedAction framed_along(const Extents& extents, bool tools, double calm) {
 
 }  // namespace
 
-ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world,
-                      double calm) {
-    const Extents extents = extents_of(store, drawn_from_world);
+ActionBox find_action(const FrameStore& store, const RenderSettings& settings,
+                      const Quat& drawn_from_world, double calm) {
+    const Extents extents = extents_of(store, settings, drawn_from_world);
     Box skin, machines;
     Outline outline;
     for (const Box& one : extents.skin) skin.grow(one);
@@ -264,7 +265,7 @@ ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_fro
         for (const Vec3& corner : corners) machines.grow(corner);
     }
     ActionBox action{skin, skin.empty() ? 0 : skin.low.y(), {}};
-    if (tools && !machines.empty() && !skin.empty()) {
+    if (!machines.empty() && !skin.empty()) {
         // A tool that waits far away, or is very long, must not make the work-piece small.
         const Vec3 reach = Vec3::Constant(kReach * skin.size().maxCoeff());
         action.bounds.grow(machines.low.cwiseMax(skin.low - reach).cwiseMin(skin.high));
@@ -281,7 +282,7 @@ ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_fro
     }
     action.framed = {action.bounds, {}, {}};
     if (!outline.empty()) action.framed.outline = outline.points();
-    if (calm > 0) action.framed = framed_along(extents, tools, calm);
+    if (calm > 0) action.framed = framed_along(extents, calm);
     return action;
 }
 

@@ -4,6 +4,7 @@
 
 #include "pipeline/frame_store.h"
 #include "render/framed_action.h"
+#include "render/settings.h"
 
 namespace swage {
 
@@ -15,9 +16,10 @@ struct ActionBox {
     double ground_height = 0;  // y
     FramedAction framed;
 };
-// As drawn, with y up. `calm`: where the camera goes along with the bodies, the frames over which
-// it gathers way and slows down, fewer in a short film; 0: it stays.
-ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world,
-                      double calm = 0);
+// As drawn, with y up; of the machines counts what is seen of them. `calm`: where the camera goes
+// along with the bodies, the frames over which it gathers way and slows down, fewer in a short
+// film; 0: it stays.
+ActionBox find_action(const FrameStore& store, const RenderSettings& settings,
+                      const Quat& drawn_from_world, double calm = 0);
 
 }  // namespace swage

@@ -6,8 +6,9 @@
 #include <map>
 
 #include "base/log.h"
+#include "base/text.h"
 #include "geometry/triangle_tree.h"
-#include "pipeline/shot.h"
+#include "pipeline/part_look.h"
 #include "render/camera.h"
 #include "render/camera_change.h"
 
@@ -20,6 +21,8 @@ constexpr int kSamples = 400;  // of the skin in each
 // Of the area that faces the camera where it stands: by which a view has to show more than that
 // and than those tried before it.
 constexpr double kClearly = 0.15;
+constexpr double kMuch = 0.5;  // of that area, hidden: it is told by what
+constexpr double kSome = 0.1;  // of that area, hidden by a part that is named
 constexpr double kDegree = kPi / 180;
 constexpr double kAside[] = {
     0, 30 * kDegree, 60 * kDegree, 180 * kDegree, 210 * kDegree, 240 * kDegree};
@@ -78,11 +81,12 @@ class SampledFilm {
                 const Quat& drawn_from_world)
         : count_(store.frame_count()) {
         for (int m = 0; settings.tools && m < store.machine_count(); ++m) {
-            auto& machine = tree_[m];
+            std::vector<Part>& machine = machine_[m];
             for (const DrawnPart& part : store.machine(m)) {
-                machine.emplace_back();
-                if (look_of(part, settings)) machine.back().emplace(part.surface);
-                hides_ |= machine.back().has_value();
+                machine.push_back({part.name, {}});
+                if (!look_of(part, settings)) continue;
+                machine.back().tree.emplace(part.surface);
+                hides_ = true;
             }
         }
         if (!hides_) return;
@@ -128,24 +132,62 @@ class SampledFilm {
         return sight;
     }
 
+    // Those that hide most of all, by name, such that the others hide less than a tenth each.
+    std::vector<std::string> hiding(const CameraPath& path,
+                                    const std::vector<CameraKey>& keys) const {
+        std::map<std::string, double> hidden;
+        double all = 0;
+        for (const Frame& frame : frame_) {
+            const Vec3 eye = path.at(still_share(keys, frame.at, count_)).eye;
+            for (const SkinSample& sample : frame.sample) {
+                const double facing = (eye - sample.place).normalized().dot(sample.normal);
+                if (!(facing > 0)) continue;
+                all += facing;
+                for (const Part* part : between(frame, sample.place, eye)) {
+                    hidden[part->name] += facing;
+                }
+            }
+        }
+        std::vector<std::string> names;
+        for (const auto& [name, area] : hidden) {
+            if (area > kSome * all) names.push_back(name);
+        }
+        std::ranges::stable_sort(names, [&](const std::string& a, const std::string& b) {
+            return hidden[a] > hidden[b];
+        });
+        return names;
+    }
+
   private:
+    struct Part {
+        std::string name;
+        std::optional<TriangleTree> tree;  // where it is seen
+    };
     struct Frame {
         int at, machine;
         std::vector<Pose> part_from_drawn;
         std::vector<SkinSample> sample;
     };
-    bool is_hidden(const Frame& frame, const Vec3& place, const Vec3& eye) const {
-        const auto& machine = tree_.at(frame.machine);
+    // Parts between place and eye; of those only the first that is found, where one is enough.
+    std::vector<const Part*> between(const Frame& frame, const Vec3& place, const Vec3& eye,
+                                     bool one_is_enough = false) const {
+        std::vector<const Part*> found;
+        const std::vector<Part>& machine = machine_.at(frame.machine);
         for (std::size_t p = 0; p < machine.size() && p < frame.part_from_drawn.size(); ++p) {
             const Pose& to = frame.part_from_drawn[p];
-            if (machine[p] && machine[p]->lies_between(to * place, to * eye)) return true;
+            if (!machine[p].tree || !machine[p].tree->lies_between(to * place, to * eye)) continue;
+            found.push_back(&machine[p]);
+            if (one_is_enough) break;
         }
-        return false;
+        return found;
+    }
+    bool is_hidden(const Frame& frame, const Vec3& place, const Vec3& eye) const {
+        return !between(frame, place, eye, true).empty();
     }
 
     int count_;
     bool hides_ = false;
-    std::map<int, std::vector<std::optional<TriangleTree>>> tree_;  // of each machine's parts
+    std::map<int, std::vector<Part>> machine_;
     std::vector<Frame> frame_;
 };
 
@@ -172,11 +214,14 @@ ChosenView choose_view(const FrameStore& store, const RenderSettings& settings,
                        const ActionBox& action, const Quat& drawn_from_world) {
     const SampledFilm film(store, settings, drawn_from_world);
     if (!film.hides() || settings.camera.empty()) return {settings.camera};
-    const auto sight_from = [&](const std::vector<CameraKey>& keys) {
+    const auto path_of = [&](const std::vector<CameraKey>& keys) {
         RenderSettings plain;
         plain.camera = keys;
         for (CameraKey& key : plain.camera) key.zoom = 1, key.target.reset();
-        return film.from(CameraPath(plain, action.framed), keys);
+        return CameraPath(plain, action.framed);
+    };
+    const auto sight_from = [&](const std::vector<CameraKey>& keys) {
+        return film.from(path_of(keys), keys);
     };
     const Sight before = sight_from(settings.camera);
     ChosenView chosen{settings.camera, before.worst.share(), before.worst.share()};
@@ -203,6 +248,16 @@ ChosenView choose_view(const FrameStore& store, const RenderSettings& settings,
             "camera: {}; tools hide {:.0f} % from there and {:.0f} % from {}, in half the film",
             told(chosen.camera.front()), 100 * (1 - chosen.seen), 100 * (1 - chosen.seen_before),
             told(settings.camera.front()));
+    }
+    if (chosen.seen < 1 - kMuch) {
+        chosen.hiding = film.hiding(path_of(chosen.camera), chosen.camera);
+        log_info("camera: tools hide {:.0f} % of the bodies in half the film{}",
+                 100 * (1 - chosen.seen),
+                 chosen.hiding.empty()
+                     ? ""
+                     : fmt::format(", most of all {}: swage render RUN --hide {} draws without, as "
+                                   "does hide in [render]",
+                                   joined(chosen.hiding, ", "), joined(chosen.hiding, ",")));
     }
     return chosen;
 }

@@ -2,6 +2,7 @@
 // From where tools hide least of the work-piece.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "pipeline/action_box.h"
@@ -17,6 +18,8 @@ struct ChosenView {
     std::vector<CameraKey> camera;
     double seen = 1;         // from there
     double seen_before = 1;  // from where it stood
+    // Where tools hide more than half: those that hide a tenth or more, most first.
+    std::vector<std::string> hiding = {};
 };
 
 // A camera with angles open (see OpenAngles) stays where it stands, unless from lower, from

@@ -11,6 +11,7 @@
 #include "base/progress.h"
 #include "pipeline/field_look.h"
 #include "pipeline/motion_vectors.h"
+#include "pipeline/part_look.h"
 #include "pipeline/shot.h"
 #include "pipeline/signals.h"
 #include "pipeline/surface_match.h"

@@ -8,7 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "pipeline/json.h"
-#include "pipeline/shot.h"
+#include "pipeline/part_look.h"
 #include "render/exr.h"
 #include "render/png.h"
 

@@ -73,6 +73,7 @@ Json render_json(const RenderSettings& settings) {
         if (settings.open.azimuth) open.push_back("azimuth");
         if (settings.open.elevation) open.push_back("elevation");
     }
+    if (!settings.hide.empty()) json["hide"] = settings.hide;
     if (!settings.passes.empty()) json["passes"] = passes_json(settings.passes);
     if (settings.color) json["color"] = words_of(*settings.color).name;
     if (settings.color_range) json["color_range"] = *settings.color_range;
@@ -113,6 +114,7 @@ RenderSettings render_settings_of(const Json& record) {
         settings.first_frame = json.value("first_frame", 1);
         settings.film = json.at("film").get<bool>();
         settings.tools = json.at("tools").get<bool>();
+        settings.hide = json.value("hide", std::vector<std::string>());
         settings.ground = json.at("ground").get<bool>();
         settings.up = up_named(json.at("up").get<std::string>());
         settings.gl = gl_named(json.at("gl").get<std::string>());

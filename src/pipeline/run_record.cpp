@@ -73,6 +73,7 @@ Json drawing_json(const DrawOutcome& drawing) {
                         {"elevation", drawing.view->camera.front().elevation},
                         {"seen", drawing.view->seen},
                         {"seen_before", drawing.view->seen_before}};
+        if (!drawing.view->hiding.empty()) json["view"]["hiding"] = drawing.view->hiding;
     }
     if (!drawing.passes.empty()) json["passes"] = passes_json(drawing.passes);
     if (drawing.color) {

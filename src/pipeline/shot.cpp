@@ -30,23 +30,12 @@ Shot shot_of(const FrameStore& store, const RenderSettings& wanted) {
         }
     }
     const double calm = wanted.follow ? kCalm * wanted.frame_rate.value() : 0;
-    Shot shot{turn, std::move(settings), find_action(store, wanted.tools, turn, calm), {}};
+    Shot shot{turn, std::move(settings), find_action(store, wanted, turn, calm), {}};
     if (shot.settings.open.any()) {
         shot.chosen = choose_view(store, shot.settings, shot.action, turn);
         shot.settings.camera = shot.chosen->camera;
     }
     return shot;
-}
-
-std::optional<SurfaceMaterial> look_of(const DrawnPart& part, const RenderSettings& settings) {
-    const bool hidden = part.finish == Finish::endless && !settings.ground;  // it stands for that
-    if (!settings.tools || hidden || part.surface.triangle.empty()) return std::nullopt;
-    SurfaceMaterial look;
-    look.name = part.name;
-    look.color = part.color;
-    look.roughness = part.finish == Finish::metal ? 0.3 : 0.95;
-    look.metallic = part.finish == Finish::metal ? 1 : 0;
-    return look;
 }
 
 }  // namespace swage

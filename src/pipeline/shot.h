@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the stills of a run are taken from, and what of its machines is in them.
+// Where the stills of a run are taken from.
 #pragma once
 
 #include <optional>
@@ -22,8 +22,5 @@ struct Shot {
 };
 Quat drawn_from_up(Up up);  // from the world
 Shot shot_of(const FrameStore& store, const RenderSettings& wanted);
-
-// How a tool, grip or blade looks; none where it is not to be seen.
-std::optional<SurfaceMaterial> look_of(const DrawnPart& part, const RenderSettings& settings);
 
 }  // namespace swage

@@ -5,7 +5,7 @@
 
 #include "geometry/usd_mesh.h"
 #include "geometry/usd_time.h"
-#include "pipeline/shot.h"
+#include "pipeline/part_look.h"
 
 namespace swage {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/math.h"
@@ -68,6 +69,7 @@ struct RenderSettings {
     int first_frame = 1;                            // what the first is called, from 1 on
     bool film = true;                               // also write film.mp4, of what is not clear
     bool tools = true;                              // draw tools, grips and blades
+    std::vector<std::string> hide;                  // of these, those that are not drawn
     bool ground = true;
     Background background = Background::studio;
     LightPlace light;

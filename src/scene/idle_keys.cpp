@@ -288,6 +288,10 @@ const std::vector<IdleKey> kOfRender = {
          });
          return any ? "" : ": no machine has a tool, a grip or a blade";
      }},
+    {"hide",
+     [](const Section& at) -> std::string {
+         return at.scene.render.tools ? "" : " with tools = false";
+     }},
     // Fields that are held may be drawn later, and then keep to it.
     {"legend",
      [](const Section& at) -> std::string {

@@ -236,6 +236,9 @@ constexpr KeyHelp kSceneKeys[] = {
      "from 1"},
     {"[render]", "film", "write film.mp4 too"},
     {"[render]", "tools", "draw tools, grips and blades"},
+    {"[render]", "hide",
+     "tools, grips and blades that are not drawn, by their names; of repeated ones NAME hides all, "
+     "NAME_2 the second"},
     {"[render]", "ground", "draw a ground under everything; false also hides an endless floor"},
     {"[render]", "legend", "draw a scale for color on the stills"},
     {"[render]", "background",

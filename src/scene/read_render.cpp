@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "base/suggest.h"
+#include "base/text.h"
+#include "machines/repeat.h"
 #include "scene/read_fields.h"
 
 namespace swage {
@@ -161,14 +164,53 @@ void read_camera(TableReader& table, std::vector<CameraKey>& camera, OpenAngles&
     }
 }
 
+void read_hidden(TableReader& table, const std::vector<StageSpec>& stages,
+                 std::vector<std::string>& hide) {
+    table.describe("hide", "a list of names, such as [\"plate\"]", "none");
+    const Node* node = table.find("hide");
+    if (node == nullptr) return;
+    if (node->kind != Node::Kind::array) {
+        table.mistake("hide", "hide must be a list of names, such as [\"plate\"]");
+        return;
+    }
+    std::vector<std::string> known;
+    const auto add = [&](const std::string& name) {
+        if (std::ranges::find(known, name) == known.end()) known.push_back(name);
+    };
+    bool knows_all = true;  // else a machine was not read, which is told
+    for (const StageSpec& stage : stages) {
+        knows_all = knows_all && !stage.machine.name.empty();
+        for (const ToolSpec& tool : stage.machine.tool) add(tool.name);
+        for (const GripSpec& grip : stage.machine.grip) add(grip.name);
+        for (const BladeSpec& blade : stage.machine.blade) add(blade.name);
+    }
+    for (const Node& item : node->item) {
+        const std::string name = item.kind == Node::Kind::text ? item.text : "";
+        const auto is_meant = [&](const std::string& part) { return is_called(part, name); };
+        if (!name.empty() && (!knows_all || std::ranges::any_of(known, is_meant))) {
+            hide.push_back(name);
+            continue;
+        }
+        table.reading().mistakes.add(
+            item.place,
+            fmt::format(
+                "hide: {} is no tool, grip or blade of any machine of the scene{}",
+                name.empty() ? kind_text(item) : '"' + name + '"',
+                hint_and(did_you_mean(name, known),
+                         known.empty() ? "there are none" : "there are " + joined(known, ", "))));
+    }
+}
+
 }  // namespace
 
-void read_render(TableReader& table, RenderSettings& settings) {
+void read_render(TableReader& table, const std::vector<StageSpec>& stages,
+                 RenderSettings& settings) {
     read_size(table, settings);
     read_frame_rate(table, settings.frame_rate);
     table.whole("first_frame", 1, kLargestFirstFrame, settings.first_frame);
     const bool says_film = table.truth("film", settings.film);
     table.truth("tools", settings.tools);
+    read_hidden(table, stages, settings.hide);
     table.truth("ground", settings.ground);
     table.truth("legend", settings.legend);
     table.choice<Background>(

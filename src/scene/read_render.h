@@ -2,11 +2,13 @@
 #pragma once
 
 #include "render/settings.h"
+#include "scene/spec.h"
 #include "scene/table_reader.h"
 
 namespace swage {
 
-// [render] and [render.camera].
-void read_render(TableReader& table, RenderSettings& settings);
+// [render] and its sections; what it hides are parts of the stages' machines.
+void read_render(TableReader& table, const std::vector<StageSpec>& stages,
+                 RenderSettings& settings);
 
 }  // namespace swage

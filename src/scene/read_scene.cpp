@@ -210,7 +210,7 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
                              "nothing to do: the scene has no [[stage]], such as\n"
                              "    [[stage]]\n    machine = \"bend\"\n    angle = \"60 deg\"");
     }
-    read_render(render, scene.render);
+    read_render(render, scene.stage, scene.render);
     fill_in(scene);
     output.truth("meshes_per_frame", scene.output.meshes_per_frame);
     read_fields(output, scene.output.fields);

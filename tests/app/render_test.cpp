@@ -128,6 +128,31 @@ TEST_CASE("without the ground, a floor that stands for it is not drawn either") 
     CHECK(bare != still({}));
 }
 
+TEST_CASE(
+    "tools are hidden by name, in a scene and in a drawing, and the mattes know none of them") {
+    const DrawableRun drawable("hide = [\"left\"]\n");
+    const auto tools = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--frames", "2", "--passes", "matte"});
+        REQUIRE(drawable.draw(drawable.out(), more).code == 0);
+        std::set<std::string> names;
+        const Json table = parse_json(bytes_of(drawable.out() / "frames/mattes.json"));
+        for (const Json& one : table.at("mattes")) {
+            if (one.at("is") == "tool") names.insert(one.at("name"));
+        }
+        return names;
+    };
+    using Names = std::set<std::string>;
+    CHECK(tools({}) == Names{"right", "support"});
+    CHECK(tools({"--hide", "none"}) == Names{"left", "right", "support"});
+    CHECK(tools({"--hide", "support,right"}) == Names{"left"});
+    CHECK(tools({"--hide", "left", "--no-tools"}).empty());
+    const Outcome refused = drawable.draw(drawable.out(), {"--hide", "suport"});
+    CHECK(refused.code == 2);
+    CHECK(refused.err ==
+          "error: \"suport\" is no tool, grip or blade of any machine of the run, did you mean "
+          "\"support\"? There are support, left, right\n");
+}
+
 TEST_CASE("what a drawing that was killed left unfinished goes with the next") {
     const DrawableRun drawable;
     CHECK(drawable.draw(drawable.out(), {"--frames", "1"}).code == 0);

@@ -112,6 +112,17 @@ TEST_CASE("a count that is no whole number is told with the parameter that makes
     }
 }
 
+TEST_CASE("a part is called by its own name, and by that of those it is one of") {
+    CHECK(is_called("roll_2", "roll_2"));
+    CHECK(is_called("roll_2", "roll"));
+    CHECK(is_called("roll_12", "roll"));
+    CHECK_FALSE(is_called("roll_12", "roll_1"));
+    CHECK_FALSE(is_called("roll", "roll_2"));
+    CHECK_FALSE(is_called("roller", "roll"));
+    CHECK_FALSE(is_called("roll_left", "roll"));
+    CHECK_FALSE(is_called("roll_", "roll"));
+}
+
 TEST_CASE("a grip that is not drawn holds all the same") {
     MachineSpec spec;
     spec.name = "vice";

@@ -15,7 +15,8 @@ namespace {
 
 // A cube of 1 m and, broken off it or beside it from the start, one of `size` that lies `away`.
 ActionBox action_of(double size, double away, bool broken_off,
-                    const std::vector<DrawnPart>& machine = {}) {
+                    const std::vector<DrawnPart>& machine = {},
+                    const RenderSettings& settings = {}) {
     const TriMesh cube = box_mesh(Vec3::Zero(), Vec3::Ones());
     TriMesh both = cube;
     for (const Vec3& p : cube.position) both.position.push_back(size * p);
@@ -39,7 +40,7 @@ ActionBox action_of(double size, double away, bool broken_off,
     writer.add_frame(frame(broken_off ? 0 : 1, 1));
     writer.add_frame(frame(1, away));
     writer.finish();
-    return find_action(FrameStore(file), true, Quat::Identity());
+    return find_action(FrameStore(file), settings, Quat::Identity());
 }
 
 }  // namespace
@@ -57,15 +58,21 @@ TEST_CASE("a chip that flies off does not make the picture small; a part that go
 TEST_CASE("the picture shows where tools are, but no end of what is endless") {
     DrawnPart slab;
     slab.surface = box_mesh(Vec3(-5, -0.1, -5), Vec3(5, 0, 5));
-    const auto widest = [&](Finish finish) {
+    slab.name = "slab";
+    const auto widest = [&](Finish finish, const std::vector<std::string>& hide = {}) {
         slab.finish = finish;
+        RenderSettings settings;
+        settings.hide = hide;
         double most = 0;
-        for (const Vec3& p : action_of(1, 2, false, {slab}).framed.outline)
+        for (const Vec3& p : action_of(1, 2, false, {slab}, settings).framed.outline)
             most = std::max(most, p.z());
         return most;
     };
     CHECK(widest(Finish::metal) > 1.1);
     CHECK(widest(Finish::endless) == Approx(1));
+    // What is not drawn takes no room.
+    CHECK(widest(Finish::metal, {"post", "slab"}) == Approx(1));
+    CHECK(widest(Finish::metal, {"post"}) > 1.1);
 }
 
 TEST_CASE("tools that reach a little lower than the work-piece stand on the ground, not in it") {
@@ -98,8 +105,8 @@ TEST_CASE("a camera that goes along frames the bodies as large as they are, and 
     }
     writer.finish();
     const FrameStore store(file);
-    const ActionBox stays = find_action(store, true, Quat::Identity());
-    const ActionBox goes = find_action(store, true, Quat::Identity(), 4);
+    const ActionBox stays = find_action(store, {}, Quat::Identity());
+    const ActionBox goes = find_action(store, {}, Quat::Identity(), 4);
     CHECK(stays.framed.way.empty());
     CHECK(goes.bounds.low == stays.bounds.low);
     CHECK(goes.bounds.high == stays.bounds.high);
@@ -154,7 +161,7 @@ TEST_CASE("a camera goes along with what flies evenly from the first still to th
         const FrameStore store(file);
         for (const double calm : {0.4, 3.75, 9.0, 40.0}) {
             INFO(calm);
-            const ActionBox goes = find_action(store, true, Quat::Identity(), calm);
+            const ActionBox goes = find_action(store, {}, Quat::Identity(), calm);
             REQUIRE(goes.framed.way.size() == static_cast<std::size_t>(frames));
             double off = 0;
             for (int f = 0; f < frames; ++f) {

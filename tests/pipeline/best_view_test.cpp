@@ -71,6 +71,22 @@ TEST_CASE("under a plate that hides a box the camera goes down") {
     CHECK(shot.chosen->seen > shot.chosen->seen_before + 0.15);
 }
 
+TEST_CASE("a tool that is not drawn hides nothing") {
+    RenderSettings settings = open_settings();
+    settings.hide = {"tool"};
+    CHECK(chosen_for(pressed_box(), settings).elevation == CameraKey().elevation);
+}
+
+TEST_CASE("tools that hide more than half of a box from everywhere are named") {
+    const TriMesh hood = box_mesh(Vec3(-3, -3, -3), Vec3(3, 3, 3));
+    const Film film(kBox, hood, Vec3::Zero(), Vec3::Zero());
+    const Shot shot = film.shot(open_settings());
+    REQUIRE(shot.chosen);
+    CHECK(shot.chosen->seen == 0);
+    CHECK(shot.chosen->hiding == std::vector<std::string>{"tool"});
+    CHECK(pressed_box().shot(open_settings()).chosen->hiding.empty());
+}
+
 TEST_CASE("where a wall hides a box the camera goes round it") {
     // As high as the box, on the side of the usual view.
     const TriMesh wall = box_mesh(Vec3(-2, 0, -0.1), Vec3(2, 1.4, 0.1));

@@ -175,6 +175,8 @@ TEST_CASE("USD has the tools that stills show, and none where they are not wante
     CHECK(run.written().numbers("/line/camera.xformOp:translate", 1) ==
           with.numbers("/line/camera.xformOp:translate", 1));
     run.scene.tools = true;
+    run.scene.render.hide = {"blade"};
+    CHECK(run.written().kind("/line/machine/_2_drop/blade").empty());
     run.scene.render.tools = false;
     CHECK(run.written().kind("/line/machine").empty());
 }

@@ -175,6 +175,9 @@ TEST_CASE("looks of what cannot come about are told") {
         {"a legend of nothing",
          scene("rubber\"\n", bend, "[render]\nlegend = false\n"),
          {"10:10: warning: legend has no effect without color"}},
+        {"nothing to hide",
+         scene("rubber\"\n", bend, "[render]\ntools = false\nhide = [\"left\"]\n"),
+         {"11:8: warning: hide has no effect with tools = false"}},
         {"no tools",
          scene("rubber\"\n", "floor\"\ngravity = 9.81\n", "[render]\ntools = false\n"),
          {}},
@@ -185,6 +188,7 @@ TEST_CASE("looks of what cannot come about are told") {
              scene("copper\"\n", bend, "[output]\nfields = [\"plastic_strain\", \"yield_use\"]\n"),
              scene("ice\"\n", bend, "[output]\nfields = [\"strength_use\"]\n"),
              scene("rubber\"\n", bend, "[render]\ncolor = \"stress\"\nlegend = false\n"),
+             scene("rubber\"\n", bend, "[render]\nhide = [\"left\"]\n"),
              scene("rubber\"\n", bend,
                    "[render]\nlegend = false\n[output]\n"
                    "fields = [\"stress\"]\n"),
