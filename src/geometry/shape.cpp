@@ -14,18 +14,33 @@ namespace {
 
 double sign_of(double value) { return value < 0 ? -1.0 : 1.0; }
 
+// Across its wall, or of a solid one its whole self.
+double wall_of(const CylinderShape& cylinder) {
+    return cylinder.hole > 0 ? cylinder.radius - cylinder.hole : 2 * cylinder.radius;
+}
+double rounding_of(const CylinderShape& cylinder) {
+    return std::clamp(cylinder.rounding, 0.0, 0.5 * std::min(wall_of(cylinder), cylinder.length));
+}
+
 Distance distance(const CylinderShape& cylinder, const Vec3& p) {
     const double from_axis = std::sqrt(p.x() * p.x() + p.y() * p.y());
-    const Vec3 radial =
-        from_axis > 0 ? Vec3(p.x() / from_axis, p.y() / from_axis, 0) : Vec3::UnitX();
+    Vec3 radial = from_axis > 0 ? Vec3(p.x() / from_axis, p.y() / from_axis, 0) : Vec3::UnitX();
     const Vec3 axial(0, 0, sign_of(p.z()));
-    const double beyond_side = from_axis - cylinder.radius;
-    const double beyond_end = std::abs(p.z()) - 0.5 * cylinder.length;
+    // A smaller sharp one, grown by the rounding.
+    const double rounding = rounding_of(cylinder);
+    double beyond_side = from_axis - cylinder.radius;
+    if (cylinder.hole > 0 && cylinder.hole - from_axis > beyond_side) {
+        beyond_side = cylinder.hole - from_axis;
+        radial = -radial;
+    }
+    beyond_side += rounding;
+    const double beyond_end = std::abs(p.z()) - 0.5 * cylinder.length + rounding;
     if (beyond_side > 0 && beyond_end > 0) {
         const double value = std::sqrt(beyond_side * beyond_side + beyond_end * beyond_end);
-        return {value, (beyond_side * radial + beyond_end * axial) / value};
+        return {value - rounding, (beyond_side * radial + beyond_end * axial) / value};
     }
-    return beyond_side >= beyond_end ? Distance{beyond_side, radial} : Distance{beyond_end, axial};
+    return beyond_side >= beyond_end ? Distance{beyond_side - rounding, radial}
+                                     : Distance{beyond_end - rounding, axial};
 }
 
 Distance distance(const BoxShape& box, const Vec3& p) {
@@ -60,7 +75,7 @@ Box bounds(const SphereShape& sphere) { return centred(Vec3::Constant(2 * sphere
 Box bounds(const MeshShape& mesh) { return box_of(mesh.mesh->position); }
 
 double thinness(const CylinderShape& cylinder) {
-    return std::min(2 * cylinder.radius, cylinder.length);
+    return std::min(wall_of(cylinder), cylinder.length);
 }
 double thinness(const BoxShape& box) { return box.size.minCoeff(); }
 double thinness(const SphereShape& sphere) { return 2 * sphere.radius; }
@@ -71,6 +86,11 @@ double thinness(const MeshShape& mesh) { return 3 * mesh.field->spacing(); }
 
 Distance distance_to(const Shape& shape, const Vec3& point) {
     return std::visit([&](const auto& one) { return distance(one, point); }, shape);
+}
+
+bool is_convex(const Shape& shape) {
+    const auto* cylinder = std::get_if<CylinderShape>(&shape);
+    return cylinder != nullptr ? !(cylinder->hole > 0) : !std::holds_alternative<MeshShape>(shape);
 }
 
 double thinness_of(const Shape& shape) {

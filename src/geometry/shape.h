@@ -18,6 +18,8 @@ class DistanceField;  // a mesh's signed distance, sampled on a grid (geometry/d
 struct CylinderShape {  // axis along z, flat ends
     double radius;
     double length;
+    double hole = 0;      // radius of a hole through it, along its axis; under `radius`
+    double rounding = 0;  // radius of its rims, those of the hole too; the outer size stays
 };
 struct BoxShape {
     Vec3 size;
@@ -40,6 +42,8 @@ Distance distance_to(const Shape& shape, const Vec3& point);
 
 // Bounds in the shape's own frame.
 Box bounds_of(const Shape& shape);
+
+bool is_convex(const Shape& shape);
 
 // About the shortest way through it [m].
 double thinness_of(const Shape& shape);

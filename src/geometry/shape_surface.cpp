@@ -13,10 +13,11 @@ namespace swage {
 namespace {
 
 constexpr int kAroundCylinder = 128;
-constexpr int kAroundRim = 4;       // steps of the rim's bevel
-constexpr double kRimShare = 0.03;  // of the radius: a rim that catches light; contact has none
-constexpr int kAroundEdge = 6;      // steps of a quarter turn around a box's edge, halved
-constexpr int kAroundSphere = 24;   // the same for a sphere
+constexpr int kAroundRim = 4;        // steps of the rim's bevel
+constexpr int kAroundRounding = 12;  // the same of a rim that is round
+constexpr double kRimShare = 0.03;   // of the radius: a rim that catches light; contact has none
+constexpr int kAroundEdge = 6;       // steps of a quarter turn around a box's edge, halved
+constexpr int kAroundSphere = 24;    // the same for a sphere
 
 // Welds positions, and gives a smooth group to each pair of position and face.
 class Surface {
@@ -50,22 +51,41 @@ class Surface {
 };
 
 TriMesh surface(const CylinderShape& cylinder) {
-    const double rim = kRimShare * std::min(cylinder.radius, 0.5 * cylinder.length);
-    // The outline from the low end's centre to the high end's: radius, height, face that ends here.
+    const bool is_round = cylinder.rounding > 0, is_bored = cylinder.hole > 0;
+    const double half_wall = 0.5 * (is_bored ? cylinder.radius - cylinder.hole : cylinder.radius);
+    const double rim = is_round ? std::min({cylinder.rounding, is_bored ? half_wall : 2 * half_wall,
+                                            0.5 * cylinder.length})
+                                : kRimShare * std::min(2 * half_wall, 0.5 * cylinder.length);
+    const int around_rim = is_round ? kAroundRounding : kAroundRim;
+    // The outline: radius, height, face that ends here. From the low end's centre to the high
+    // end's; of a bored one from the low end of the hole round to there again.
     struct Ring {
         double radius, height;
         int face;
     };
-    std::vector<Ring> outline = {{0, -0.5 * cylinder.length, 0}};
-    for (int end = 0; end < 2; ++end) {
-        for (int n = 0; n <= kAroundRim; ++n) {
-            const double angle = 0.5 * kPi * (end == 0 ? kAroundRim - n : n) / kAroundRim;
+    std::vector<Ring> outline;
+    // Outer rims by 1, those of the hole by -1.
+    const auto add_rim = [&](double radius, double way, bool is_high, int face) {
+        for (int n = 0; n <= around_rim; ++n) {
+            const int step =
+                is_high == (way > 0) ? n : around_rim - n;  // from side to end, or back
+            const double angle = 0.5 * kPi * step / around_rim;
             const double height = 0.5 * cylinder.length - rim * (1 - portable::sin(angle));
-            outline.push_back({cylinder.radius - rim * (1 - portable::cos(angle)),
-                               end == 0 ? -height : height, n == 0 ? 2 * end : 2 * end + 1});
+            outline.push_back({radius - way * rim * (1 - portable::cos(angle)),
+                               is_high ? height : -height, n == 0 ? face : face + 1});
         }
+    };
+    if (!is_bored) outline.push_back({0, -0.5 * cylinder.length, 0});
+    add_rim(cylinder.radius, 1, false, 0);
+    add_rim(cylinder.radius, 1, true, 2);
+    if (is_bored) {
+        add_rim(cylinder.hole, -1, true, 4);
+        add_rim(cylinder.hole, -1, false, 6);
+        outline.push_back(outline.front());
+        outline.back().face = 8;
+    } else {
+        outline.push_back({0, 0.5 * cylinder.length, 4});
     }
-    outline.push_back({0, 0.5 * cylinder.length, 4});
 
     Surface surface;
     const auto point = [&](const Ring& ring, int n) {

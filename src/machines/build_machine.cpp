@@ -101,21 +101,33 @@ Shape shape_of(const Setting& setting, const ToolSpec& tool) {
     const auto length = [&](const Expression& text, const char* quantity) {
         return positive(setting, text, "tool " + tool.name, quantity);
     };
+    const auto rounding = [&](double most, const char* what) {
+        const double value = evaluate(tool.rounding, setting.known, Quantity::length);
+        if (value >= 0 && value <= most) return value;
+        refuse(tool.rounding,
+               fmt::format("the rounding of tool {} is {} and must be 0 to half of {}", tool.name,
+                           quantity_text(value, Quantity::length), what));
+    };
     if (tool.shape == ToolShape::cylinder) {
-        return CylinderShape{length(tool.radius, "radius"), length(tool.length, "length")};
+        CylinderShape cylinder{length(tool.radius, "radius"), length(tool.length, "length")};
+        cylinder.hole = evaluate(tool.hole, setting.known, Quantity::length);
+        if (!(cylinder.hole >= 0 && cylinder.hole < cylinder.radius)) {
+            refuse(tool.hole,
+                   fmt::format("the hole of tool {} is {} and must be 0 to less than "
+                               "its radius",
+                               tool.name, quantity_text(cylinder.hole, Quantity::length)));
+        }
+        const double thin = thinness_of(cylinder);
+        cylinder.rounding = rounding(0.5 * thin, thin == cylinder.length ? "its length"
+                                                 : cylinder.hole > 0     ? "its wall"
+                                                                         : "its diameter");
+        return cylinder;
     }
     if (tool.shape == ToolShape::sphere) return SphereShape{length(tool.radius, "radius")};
     if (tool.shape == ToolShape::box) {
         const Vec3 size(length(tool.size[0], "size"), length(tool.size[1], "size"),
                         length(tool.size[2], "size"));
-        const double rounding = evaluate(tool.rounding, setting.known, Quantity::length);
-        if (!(rounding >= 0 && rounding <= 0.5 * size.minCoeff())) {
-            refuse(tool.rounding,
-                   fmt::format("the rounding of tool {} is {} and must be 0 to half of the box's "
-                               "smallest side",
-                               tool.name, quantity_text(rounding, Quantity::length)));
-        }
-        return BoxShape{size, rounding};
+        return BoxShape{size, rounding(0.5 * size.minCoeff(), "the box's smallest side")};
     }
     if (tool.shape == ToolShape::mesh) return scaled_mesh(setting, tool);
     refuse({}, fmt::format("tool {} has no shape", tool.name));

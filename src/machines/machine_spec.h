@@ -81,8 +81,9 @@ struct ToolSpec {
     ToolShape shape = ToolShape::none;   // has to be said
     Expression radius = "0";             // cylinder, sphere
     Expression length = "0";             // cylinder
+    Expression hole = "0";               // cylinder
     Expression3 size = {"0", "0", "0"};  // box
-    Expression rounding = "0";           // box
+    Expression rounding = "0";           // box, cylinder
     std::filesystem::path mesh;  // mesh: absolute; scaled so that its longest side is `length`
     TextPlace mesh_place;        // where it is named
     Expression3 axis = {"0", "0", "1"};  // the shape's z axis, in the work frame

@@ -59,12 +59,15 @@ MachineSpec with_single_parts(MachineSpec machine, const Variables& known) {
     return machine;
 }
 
-bool is_called(std::string_view part, std::string_view name) {
-    if (!part.starts_with(name)) return false;
-    part.remove_prefix(name.size());
-    if (part.empty()) return true;
+bool is_numbered(std::string_view part, std::string_view repeated) {
+    if (!part.starts_with(repeated)) return false;
+    part.remove_prefix(repeated.size());
     return part.size() > 1 && part.front() == '_' &&
            part.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
+bool is_called(std::string_view part, std::string_view name) {
+    return part == name || is_numbered(part, name);
 }
 
 }  // namespace swage

@@ -16,6 +16,9 @@ constexpr int kMostRepeats = 100;
 // that it uses, where it is no whole number from 0 to kMostRepeats.
 MachineSpec with_single_parts(MachineSpec machine, const Variables& known);
 
+// Whether that is a name of one of the single parts that a repeated part becomes.
+bool is_numbered(std::string_view part, std::string_view repeated);
+
 // Whether a single part is called that: NAME_2 is by its own name and, as one of several, by NAME.
 bool is_called(std::string_view part, std::string_view name);
 

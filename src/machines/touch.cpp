@@ -99,7 +99,7 @@ std::optional<double> slide_to_touch(const Shape& shape, const Pose& points_from
     };
     // Steps as long as these could go through it.
     const double deepest = 0.5 * thinness_of(shape) + gap;
-    if (4 * deepest < kSmallestStep * size && !std::holds_alternative<MeshShape>(shape)) {
+    if (4 * deepest < kSmallestStep * size && is_convex(shape)) {
         const auto first_of = [&](std::size_t from, std::size_t to) {
             double first = std::numeric_limits<double>::infinity();
             for (std::size_t p = from; p < to; ++p) {

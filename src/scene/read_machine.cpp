@@ -100,12 +100,6 @@ class MachineReader {
         }
     }
 
-    static bool is_numbered(const std::string& text, const std::string& name) {
-        return text.size() > name.size() + 1 && text.starts_with(name + "_") &&
-               std::all_of(text.begin() + std::ptrdiff_t(name.size()) + 1, text.end(),
-                           [](char c) { return c >= '0' && c <= '9'; });
-    }
-
     void read_tool(const Node& node, MachineSpec& machine) {
         TableReader table(node, "[[tool]]", reading_);
         ToolSpec tool;
@@ -181,6 +175,9 @@ class MachineReader {
                 table.missing("size", "three lengths along x, y and z");
             }
             expression.expect_positive(table, "size");
+        }
+        if (is(ToolShape::cylinder)) expression.read(table, "hole", Quantity::length, tool.hole);
+        if (is(ToolShape::cylinder) || is(ToolShape::box)) {
             expression.read(table, "rounding", Quantity::length, tool.rounding);
         }
         if (is(ToolShape::mesh)) read_tool_mesh(table, tool.mesh, tool.mesh_place);

@@ -84,8 +84,13 @@ MeshShape mesh_shape(TriMesh mesh, double spacing = 0) {
 }  // namespace
 
 TEST_CASE("the gradient of an exact shape is its unit normal") {
-    const std::vector<Shape> shapes = {CylinderShape{0.3, 1.1}, BoxShape{{0.5, 0.9, 0.7}, 0.1},
-                                       BoxShape{{0.5, 0.9, 0.7}, 0.0}, SphereShape{0.4}};
+    const std::vector<Shape> shapes = {CylinderShape{0.3, 1.1},
+                                       CylinderShape{0.3, 1.1, 0, 0.2},
+                                       CylinderShape{0.5, 0.4, 0.2},
+                                       CylinderShape{0.5, 0.4, 0.2, 0.1},
+                                       BoxShape{{0.5, 0.9, 0.7}, 0.1},
+                                       BoxShape{{0.5, 0.9, 0.7}, 0.0},
+                                       SphereShape{0.4}};
     for (const Shape& shape : shapes) {
         int checked = 0;
         for (const Vec3& p : spread_points(grown(bounds_of(shape), 0.3), 3000)) {
@@ -101,8 +106,9 @@ TEST_CASE("the gradient of an exact shape is its unit normal") {
 }
 
 TEST_CASE("the distance of an exact shape leads to its surface") {
-    const std::vector<Shape> shapes = {CylinderShape{0.3, 1.1}, BoxShape{{0.5, 0.9, 0.7}, 0.1},
-                                       SphereShape{0.4}};
+    const std::vector<Shape> shapes = {CylinderShape{0.3, 1.1}, CylinderShape{0.3, 1.1, 0.1, 0.1},
+                                       CylinderShape{0.3, 1.1, 0, 0.2},
+                                       BoxShape{{0.5, 0.9, 0.7}, 0.1}, SphereShape{0.4}};
     for (const Shape& shape : shapes) {
         for (const Vec3& p : spread_points(grown(bounds_of(shape), 0.5), 1000)) {
             const Distance d = distance_to(shape, p);
@@ -118,6 +124,18 @@ TEST_CASE("closed forms of a distance hold on faces, edges and corners") {
     CHECK(distance_to(cylinder, {0, 0, -1.5}).value == Approx(0.5));
     CHECK(distance_to(cylinder, {4, 0, 5}).value == Approx(5));
     CHECK((distance_to(cylinder, {4, 0, 5}).normal - Vec3(0.6, 0, 0.8)).norm() < 1e-12);
+    const Shape ring = CylinderShape{3, 2, 1, 0.5};
+    CHECK(distance_to(ring, {0, 0, 0}).value == Approx(1));
+    CHECK(distance_to(ring, {0.5, 0, 0}).value == Approx(0.5));
+    CHECK((distance_to(ring, {0, 0.5, 0}).normal - Vec3(0, -1, 0)).norm() < 1e-12);
+    CHECK(distance_to(ring, {0, 2, 0}).value == Approx(-1));
+    CHECK(distance_to(ring, {0, 0, 9}).value == Approx(std::hypot(1.5, 8.5) - 0.5));
+    CHECK(distance_to(ring, {1, 0, 1}).value == Approx(0.5 * (std::sqrt(2.0) - 1)));
+    CHECK(distance_to(ring, {0, -3, -1}).value == Approx(0.5 * (std::sqrt(2.0) - 1)));
+    CHECK_FALSE(is_convex(ring));
+    CHECK(is_convex(cylinder));
+    CHECK(thinness_of(ring) == 2);
+    CHECK(thinness_of(CylinderShape{3, 9, 1}) == 2);
     const Shape box = BoxShape{{2, 4, 6}, 0.5};
     CHECK(distance_to(box, {0, 0, 0}).value == Approx(-1));
     CHECK(distance_to(box, {0, 3, 0}).value == Approx(1));
@@ -127,8 +145,9 @@ TEST_CASE("closed forms of a distance hold on faces, edges and corners") {
 }
 
 TEST_CASE("every point of a shape has a normal, its axis and centre too") {
-    const std::vector<Shape> shapes = {CylinderShape{1, 9}, BoxShape{{1, 1, 1}, 0},
-                                       BoxShape{{1, 1, 1}, 0.5}, SphereShape{1}};
+    const std::vector<Shape> shapes = {CylinderShape{1, 9}, CylinderShape{1, 9, 0.5, 0.25},
+                                       BoxShape{{1, 1, 1}, 0}, BoxShape{{1, 1, 1}, 0.5},
+                                       SphereShape{1}};
     for (const Shape& shape : shapes) {
         for (const Vec3& p : {Vec3(0, 0, 0), Vec3(0, 0, 0.5), Vec3(0.5, 0.5, 0.5)}) {
             CHECK(distance_to(shape, p).normal.norm() == Approx(1));
@@ -146,8 +165,20 @@ TEST_CASE("a shape's drawn surface is closed, lies on it and winds outward") {
     const double rounded =
         core.prod() + 2 * r * (core.x() * core.y() + core.y() * core.z() + core.z() * core.x()) +
         kPi * r * r * core.sum() + 4.0 / 3 * kPi * r * r * r;
+    // By Pappus: parts of the outline, times the ways of their middles.
+    const double inner = 0.2, quarter = 0.25 * kPi * r * r;
+    const double knob = kPi * inner * inner * 1.1 +
+                        2 * kPi * (inner + 0.5 * r) * r * (1.1 - 2 * r) +
+                        4 * kPi * (inner + 4 * r / (3 * kPi)) * quarter;
+    const double ring = 2 * kPi * 0.35 * (0.3 * 0.4 - 4 * (r * r - quarter));
     const std::vector<Case> cases = {
         {CylinderShape{0.3, 1.1}, kPi * 0.09 * 1.1, 0.003},
+        {CylinderShape{0.3, 1.1, 0, r}, knob, 0.003},
+        {CylinderShape{0.5, 0.4, 0.2, r}, ring, 0.003},
+        {CylinderShape{0.5, 0.4, 0.2}, kPi * (0.25 - 0.04) * 0.4, 0.003},
+        {CylinderShape{0.5, 0.4, 0.2, 0.15}, -1, 0},
+        {CylinderShape{0.3, 1.1, 0, 0.3}, -1, 0},
+        {CylinderShape{0.3, 0.2, 0, 0.1}, -1, 0},
         {BoxShape{{0.5, 0.9, 0.7}, r}, rounded, 0.002},
         {BoxShape{{0.5, 0.9, 0.7}, 0}, 0.5 * 0.9 * 0.7, 1e-12},
         {BoxShape{{0.5, 0.9, 0.7}, 0.25}, -1, 0},

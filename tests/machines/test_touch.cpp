@@ -87,6 +87,26 @@ TEST_CASE("a tool that passes by touches nothing") {
                          0));
 }
 
+TEST_CASE("a ring comes to rest on what is wider than its hole, and passes what is not") {
+    const std::vector<Vec3> points = box_points({-1, -0.2, -0.3}, {1, 0.2, 0.3}, {40, 8, 12});
+    const Pose above{turn_about(Vec3::UnitX(), 0.5 * kPi), {0, 3, 0}};
+    const auto drop = [&](double hole, double rounding) {
+        return slide_to_touch(CylinderShape{hole + 0.5, 0.2, hole, rounding}, above, -Vec3::UnitY(),
+                              points, 0);
+    };
+    for (const double rounding : {0.0, 0.1}) {
+        const auto on_top = drop(0.6, rounding);
+        REQUIRE(on_top);
+        CHECK(*on_top == Approx(3 - 0.2 - 0.1).margin(1e-8));
+        CHECK_FALSE(drop(1.05, rounding));  // the block's corners are 1.044 from its middle
+    }
+    // On its rounded edge, whose lowest points are 1.1 from the axis.
+    const auto by_edge = drop(1.0, 0.1);
+    REQUIRE(by_edge);
+    const double beside = 1.1 - std::hypot(1.0, 0.3);
+    CHECK(*by_edge == Approx(3 - 0.2 - std::sqrt(0.01 - beside * beside)).margin(1e-8));
+}
+
 TEST_CASE("however thin a tool is, it stops where a thick one does, or passes by") {
     const std::vector<Vec3> points = box_points({-1, -0.2, -0.3}, {1, 0.2, 0.3}, {40, 8, 12});
     const Quat aslant = turn_about(Vec3::UnitX(), 0.3);

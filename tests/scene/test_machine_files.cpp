@@ -42,6 +42,8 @@ name = "roll"
 shape = "cylinder"
 radius = "radius"
 length = "width + 2 mm"
+hole = "radius/2"
+rounding = "0.1*radius"
 axis = [0, 1, 0]
 at = [0, "-height", 0.25]
 touch = [0, 1, 0]
@@ -104,6 +106,8 @@ otherwise = "choose a smaller radius"
     CHECK(roll.shape == ToolShape::cylinder);
     CHECK(roll.radius == "radius");
     CHECK(roll.length == "width + 2 mm");
+    CHECK(roll.hole == "radius/2");
+    CHECK(roll.rounding == "0.1*radius");
     CHECK(roll.axis == Expression3{"0", "1", "0"});
     CHECK(roll.at == Expression3{"0", "-height", "0.25"});
     CHECK(roll.touch == Expression3{"0", "1", "0"});

@@ -22,10 +22,12 @@ std::string mistakes_of(const std::string& text) {
 }
 
 // The parts of the first stage, and what was wrong with it.
-std::pair<std::vector<std::string>, std::string> parts_with(const std::string& lines) {
+std::pair<std::vector<std::string>, std::string> parts_with(const std::string& lines,
+                                                            const std::string& render = "") {
     const SceneFolder scratch;
     scratch.write("rolls.toml", kRolls + "repeat = \"rolls\"\n" + kAt + kTurns);
     Parts parts = with(&Parts::stage, "[[stage]]\nmachine = \"./rolls.toml\"\n" + lines);
+    parts.rest += render;
     const SceneReading reading = read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
     std::vector<std::string> names;
     if (reading.scene) {
@@ -56,14 +58,14 @@ TEST_CASE("what a scene asks of parts that are not there is told at its place") 
           "s.toml:9:9: rolls = -3 is out of range: machine rolls takes 0 to 50\n");
     CHECK(parts_with("rolls = 2\n[[stage.limit]]\npart = \"roll_3\"\nforce = \"2 N\"\n")
               .second.find("machine rolls has no tool or grip \"roll_3\"") != std::string::npos);
-    CHECK(parts_with("rolls = 2\n[render]\nhide = [\"roll_1\", \"roll\"]\n").second.empty());
+    CHECK(parts_with("rolls = 2\n", "hide = [\"roll_1\", \"roll\"]\n").second.empty());
     CHECK(
-        parts_with("rolls = 2\n[render]\nhide = [\"roll_2\", \"roll_3\", 4]\n").second ==
+        parts_with("rolls = 2\n", "hide = [\"roll_2\", \"roll_3\", 4]\n").second ==
         "s.toml:12:19: hide: \"roll_3\" is no tool, grip or blade of any machine of the scene, did "
         "you mean \"roll_1\"? There are roll_1, roll_2\n"
         "s.toml:12:29: hide: a whole number is no tool, grip or blade of any machine of the scene; "
         "there are roll_1, roll_2\n");
-    CHECK(parts_with("[render]\nhide = \"roll\"\n").second ==
+    CHECK(parts_with("", "hide = \"roll\"\n").second ==
           "s.toml:11:8: hide must be a list of names, such as [\"plate\"]\n");
 }
 
