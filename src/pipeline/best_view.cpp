@@ -208,6 +208,30 @@ std::vector<std::vector<CameraKey>> candidates(const RenderSettings& settings) {
     return result;
 }
 
+// Where the camera went, and what hides much from there all the same.
+void tell(const ChosenView& chosen, const CameraKey& before) {
+    const auto told = [](const CameraKey& key) {
+        return fmt::format("azimuth {:.3g} deg, elevation {:.3g} deg", key.azimuth / kDegree,
+                           key.elevation / kDegree);
+    };
+    std::string text;
+    if (chosen.seen > chosen.seen_before) {
+        text =
+            fmt::format("{}; tools hide {:.0f} % from there and {:.0f} % from {}, in half the film",
+                        told(chosen.camera.front()), 100 * (1 - chosen.seen),
+                        100 * (1 - chosen.seen_before), told(before));
+    } else if (chosen.seen < 1 - kMuch) {
+        text = fmt::format("tools hide {:.0f} % of the bodies in half the film",
+                           100 * (1 - chosen.seen));
+    }
+    if (!chosen.hiding.empty()) {
+        text += fmt::format(
+            ", most of all {}: swage render RUN --hide {} draws without, as does hide in [render]",
+            joined(chosen.hiding, ", "), joined(chosen.hiding, ","));
+    }
+    if (!text.empty()) log_info("camera: {}", text);
+}
+
 }  // namespace
 
 ChosenView choose_view(const FrameStore& store, const RenderSettings& settings,
@@ -239,26 +263,10 @@ ChosenView choose_view(const FrameStore& store, const RenderSettings& settings,
         chosen.camera = keys;
         chosen.seen = sight.worst.share();
     }
-    if (chosen.seen > chosen.seen_before) {
-        const auto told = [](const CameraKey& key) {
-            return fmt::format("azimuth {:.3g} deg, elevation {:.3g} deg", key.azimuth / kDegree,
-                               key.elevation / kDegree);
-        };
-        log_info(
-            "camera: {}; tools hide {:.0f} % from there and {:.0f} % from {}, in half the film",
-            told(chosen.camera.front()), 100 * (1 - chosen.seen), 100 * (1 - chosen.seen_before),
-            told(settings.camera.front()));
-    }
     if (chosen.seen < 1 - kMuch) {
         chosen.hiding = film.hiding(path_of(chosen.camera), chosen.camera);
-        log_info("camera: tools hide {:.0f} % of the bodies in half the film{}",
-                 100 * (1 - chosen.seen),
-                 chosen.hiding.empty()
-                     ? ""
-                     : fmt::format(", most of all {}: swage render RUN --hide {} draws without, as "
-                                   "does hide in [render]",
-                                   joined(chosen.hiding, ", "), joined(chosen.hiding, ",")));
     }
+    tell(chosen, settings.camera.front());
     return chosen;
 }
 

@@ -40,20 +40,22 @@ TEST_CASE("a round blank is drawn into a round cup, which keeps its volume and t
     const swage::TriMesh after = swage::read_mesh(folder / "run/meshes/1-draw.obj");
     CHECK(swage::check_mesh(after).volume ==
           Approx(swage::check_mesh(before).volume).epsilon(1e-3));
+    double middle[2] = {};  // of the lower and the upper face
     for (const double side : {-1.0, 1.0}) {
-        double least = 1, most = 0, middle = 0;
+        double least = 1, most = 0;
         for (std::size_t v = 0; v < before.position.size(); ++v) {
             const Vec3& was = before.position[v];
             if (was.x() * side < 0) continue;
             const Vec3& is = after.position[v];
-            if (radius_of(was) < 1e-6) middle = is.x();
+            if (radius_of(was) < 1e-6) middle[side > 0] = is.x();
             if (radius_of(was) < 0.999 * kRadius) continue;
             least = std::min(least, radius_of(is)), most = std::max(most, radius_of(is));
         }
         // The rim has come in, on a cubic lattice as far to all sides.
         CHECK(most < 0.94 * kRadius);
         CHECK(most - least < 0.01 * kRadius);
-        // Under the punch the sheet is as low as that goes, and about as thick as it was.
-        CHECK(middle == Approx(side * 0.5 * kThick - 0.01).margin(0.07 * kThick));
     }
+    // Under the punch the sheet is at least as low as that goes, and about as thick as it was.
+    CHECK(middle[1] < 0.5 * kThick - 0.01 + 0.02 * kThick);
+    CHECK(middle[1] - middle[0] == Approx(kThick).epsilon(0.07));
 }
