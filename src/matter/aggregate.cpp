@@ -134,7 +134,8 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(particle_position) + bytes_of(particle_velocity) +
                       bytes_of(particle_mass) + bytes_of(cell_fill) + cell_centroid.bytes() +
                       bytes_of(cell_cracked) + bytes_of(cell_set) + bytes_of(inset) +
-                      bytes_of(cell_material) + bytes_of(mixed_cell) + surface.bytes();
+                      bytes_of(cell_material) + bytes_of(mixed_cell) + bytes_of(cut) +
+                      surface.bytes();
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const std::vector<float>& row : cell_history.row) sum += bytes_of(row);
     for (const std::vector<float>& row : cell_back.row) sum += bytes_of(row);

@@ -29,6 +29,13 @@ struct ConnectionArrays {
     std::vector<float> damage;
 };
 
+// Where a blade crossed a connection that it severed.
+struct CutPoint {
+    using IsPlain = CutPoint;
+    std::array<float, 3> place;   // at molding, from the lattice's origin [spacings]
+    std::array<float, 3> normal;  // of the blade's path there, at molding: unit, to either side
+};
+
 // Numbers of a cell's history (laws/cell.h), in this order: inverse of the plastic stretch less
 // one, xx, yy, zz, xy, yz, zx; plastic part of the modes xy, yz, zx, xyz, three components each
 // [m]; hardening, which is accumulated plastic strain.
@@ -139,6 +146,8 @@ struct Aggregate {
     std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
 
     std::vector<BranchMemory> branch_memory;  // empty: it has come to rest
+
+    std::vector<CutPoint> cut;  // of all blades, in the order in which they severed
 
     SurfacePoints surface;
 

@@ -30,16 +30,26 @@ TouchPoints::TouchPoints(const Aggregate& matter, bool beside_cuts)
     connections_changed(matter);
 }
 
-int TouchPoints::face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face) {
-    const auto [at, is_new] = face_.try_emplace({cell, face}, static_cast<int>(points_.size()));
-    if (!is_new) return at->second;
-    const int axis = face >> 1, out = face & 1 ? 1 : -1;
-    Vec3 place = Vec3::Constant(0.5);
-    place[axis] += out;
-    const double a = lattice.spacing;
-    points_.add(lattice.cell_row(cell), place, a * a, out * Vec3::Unit(axis));
-    home_.push_back(site);
-    return at->second;
+int TouchPoints::face_point(const Aggregate& matter, const FaceSite& at) {
+    const auto [known, is_new] =
+        face_.try_emplace({at.cell, at.face}, static_cast<int>(points_.size()));
+    if (!is_new) return known->second;
+    const Vec3 out = (at.face & 1 ? 1 : -1) * Vec3::Unit(at.face >> 1);
+    const Vec3 middle = Vec3::Constant(0.5) + 0.5 * out;  // of the face, in the cell
+    Vec3 place = middle + 0.5 * out, normal = out;
+    double share = 1;
+    if (const auto plane = cut_before(matter, *cuts_, at.site, at.face)) {
+        // As many faces look out along an axis as the plane's area has that way, so that all areas
+        // add up to that.
+        normal = plane->normal * (plane->normal.dot(out) < 0 ? -1 : 1);
+        share = normal.dot(out);
+        const Vec3 way = plane->place - at.site.cast<double>() - middle;
+        place = middle + way.dot(normal) * normal;
+    }
+    const double a = matter.lattice.spacing;
+    points_.add(matter.lattice.cell_row(at.cell), place, share * a * a, normal);
+    home_.push_back(at.site);
+    return known->second;
 }
 
 int TouchPoints::loose_point(double spacing, ParticleId particle) {
@@ -128,12 +138,14 @@ std::vector<TouchPoints::Carried> TouchPoints::connections_changed(const Aggrega
     if (beside_cuts_) changed = carry_beside(matter);
     whole_ = std::move(whole);
     if (std::find(whole_.begin(), whole_.end(), 0) == whole_.end()) return changed;
+    cuts_.emplace(matter);
     for_each_open_face(lattice, whole_, [&](const CellRun& run, int n, int face) {
-        const Vec3i site(run.i + n, run.j, run.k);
-        const auto point = static_cast<std::size_t>(face_point(lattice, run.first + n, site, face));
+        const FaceSite at{run.first + n, Vec3i(run.i + n, run.j, run.k), face};
+        const auto point = static_cast<std::size_t>(face_point(matter, at));
         if (point == meets_.size()) meets_.push_back(0);
         meets_[point] = 1;
     });
+    cuts_.reset();
     add_loose(matter);
     return changed;
 }

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The points of a body with which it meets tools, other bodies and itself: those of its surface as
 // molded, with its edges and corners, and where cells are no longer whole, cut or broken, a new
-// surface half-way through them: a point before each face of a whole cell that looks at one, half a
-// spacing out, which the whole cell carries. What a blade has left of a cell on either side of its
+// surface: a point before each face of a whole cell that looks at one, which the whole cell
+// carries. It lies where the blade went, or half a spacing out where a load broke the matter. What
+// a blade has left of a cell on either side of its
 // path is carried by a whole one of that side (matter/point_side.h). Else what a cell no longer
 // whole carries meets nothing; particles that no whole cell has left meet by themselves.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "matter/cut_planes.h"
 #include "matter/point_side.h"
 
 namespace swage {
@@ -43,6 +46,8 @@ class TouchPoints {
     // The body's own; those of new surface come after them.
     std::size_t own() const { return own_; }
     bool meets(int point) const { return meets_[point] != 0; }
+    // Of new surface those before faces of cells, 2 axis + side.
+    const std::map<std::pair<CellId, int>, int>& faces() const { return face_; }
     // A particle by itself.
     bool is_loose(int point) const { return points_.is_loose(static_cast<std::size_t>(point)); }
     // The cell that the point lies in or just outside of; of new surface, that which carries it.
@@ -57,7 +62,12 @@ class TouchPoints {
 
   private:
     std::vector<Carried> carry_beside(const Aggregate& matter);
-    int face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face);
+    struct FaceSite {  // one that looks at a cell no longer whole
+        CellId cell;
+        Vec3i site;
+        int face;  // 2 axis + side
+    };
+    int face_point(const Aggregate& matter, const FaceSite& at);
     int loose_point(double spacing, ParticleId particle);
     void add_loose(const Aggregate& matter);
 
@@ -70,6 +80,7 @@ class TouchPoints {
     std::vector<char> meets_, whole_;
     std::vector<Carried> beside_;  // its own that a cell beside theirs carries: as molded, by point
     std::map<std::pair<CellId, int>, int> face_;  // the point before a face of a cell
+    std::optional<CutPlanes> cuts_;               // while faces are looked at
     std::map<ParticleId, int> loose_;             // the point of a particle
 };
 

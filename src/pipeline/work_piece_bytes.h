@@ -82,11 +82,11 @@ template <typename Io>
 void visit(Io& io, Aggregate& matter) {
     auto& [material, lattice, particle_reference, particle_position, particle_velocity,
            particle_mass, connection, cell_fill, cell_centroid, inset, cell_material, mixed_cell,
-           cell_cracked, cell_set, cell_history, cell_back, cell_plastic, branch_memory, surface] =
-        matter;
+           cell_cracked, cell_set, cell_history, cell_back, cell_plastic, branch_memory, cut,
+           surface] = matter;
     io(material, lattice, particle_reference, particle_position, particle_velocity, particle_mass,
        connection, cell_fill, cell_centroid, inset, cell_material, mixed_cell, cell_cracked,
-       cell_set, cell_history, cell_back, cell_plastic, branch_memory, surface);
+       cell_set, cell_history, cell_back, cell_plastic, branch_memory, cut, surface);
 }
 
 // What finish_mount derives is left to it.

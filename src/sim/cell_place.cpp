@@ -11,7 +11,7 @@ Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& 
     if (out.isZero()) return Onward::ends_lost;  // no number
     CellId next = -1;
     Vec3i step = out;
-    bool opens = false;    // onto a cell that is cut or broken, half of which is still this side's
+    bool opens = false;    // onto a cell that is cut or broken, part of which is still this side's
     bool is_deep = false;  // what lies on is no rim
     const auto try_step = [&](const Vec3i& s) {
         const Vec3i site = at.site + s;
@@ -34,7 +34,7 @@ Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& 
         }
     }
     if (next < 0) {
-        const double more = opens ? 0.5 : is_deep ? 0 : kSliver;
+        const double more = opens ? onto.beyond(at.cell) : is_deep ? 0 : kSliver;
         const bool holds = found && (p.array() >= -more).all() && (p.array() <= 1 + more).all();
         return holds ? Onward::ends_found : Onward::ends_lost;
     }
@@ -46,7 +46,8 @@ Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& 
         corner.now[c] = &corner.copy[c];
     }
     p -= step.cast<double>();
-    p = p.cwiseMax(-0.5).cwiseMin(1.5);
+    const double beyond = onto.beyond(next);
+    p = p.cwiseMax(-beyond).cwiseMin(1 + beyond);
     return Onward::goes;
 }
 

@@ -31,10 +31,10 @@ struct CellGradient {
     double volume;
 };
 
-// Whether x has been found by Newton's method from `place`, which goes on; false too where the
-// cell is inside out.
-SWAGE_INLINE bool find_in_cell(const CellCorners& corner, Vec4 x, double spacing, Vec3& place,
-                               CellGradient& at) {
+// Whether x has been found by Newton's method from `place`, which goes on until that is so far
+// beyond the cell; false too where the cell is inside out.
+SWAGE_INLINE bool find_in_cell(const CellCorners& corner, Vec4 x, double spacing, double beyond,
+                               Vec3& place, CellGradient& at) {
     Vec3 p = place;
     bool found = false;
     for (int n = 0; n < 12 && !found; ++n) {
@@ -64,7 +64,7 @@ SWAGE_INLINE bool find_in_cell(const CellCorners& corner, Vec4 x, double spacing
         p += way;
         found = size < 1e-8;
         // Far off: the cell there is a better place to go on from.
-        if (n > 0 && ((p.array() < -0.5).any() || (p.array() > 1.5).any())) break;
+        if (n > 0 && ((p.array() < -beyond).any() || (p.array() > 1 + beyond).any())) break;
     }
     place = p;
     return found;
@@ -82,8 +82,8 @@ inline constexpr double kSlack = 1e-9;  // of places in cells
 SWAGE_INLINE bool find_place(const ContactSide& onto, Vec4 x, CellPlace& at, CellCorners& corner,
                              CellGradient& gradient) {
     for (int hop = 0; hop < 6; ++hop) {
-        const bool found =
-            find_in_cell(corner, x, onto.matter().lattice.spacing, at.place, gradient);
+        const bool found = find_in_cell(corner, x, onto.matter().lattice.spacing,
+                                        onto.beyond(at.cell), at.place, gradient);
         if (gradient.volume == 0) return false;
         if ((at.place.array() >= -kSlack).all() && (at.place.array() <= 1 + kSlack).all()) {
             return found;

@@ -10,7 +10,7 @@ namespace swage {
 
 namespace {
 
-constexpr double kBeside = 0.6;  // cells that a point may go beyond the one that it has met
+constexpr double kBeside = 0.1;  // cells beyond the reach of the one that it has met: a point's way
 constexpr double kTurned = 0.1;  // of a reach squared, across a surface that has turned, that holds
 
 }  // namespace
@@ -32,10 +32,11 @@ struct ContactWay::Kernel {
     SWAGE_INLINE bool find_by_plane(Contact& contact, Vec4 x, Plane& plane,
                                     const CellCorners& corner, CellGradient& gradient,
                                     RestSurface::Depth& depth) const {
-        const bool found =
-            find_in_cell(corner, x, onto.matter().lattice.spacing, contact.place, gradient);
+        const bool found = find_in_cell(corner, x, onto.matter().lattice.spacing,
+                                        onto.beyond(contact.cell), contact.place, gradient);
         const Vec3& p = contact.place;
-        if (!found || (p.array() < -kBeside).any() || (p.array() > 1 + kBeside).any()) {
+        const double beyond = onto.beyond(contact.cell) + kBeside;
+        if (!found || (p.array() < -beyond).any() || (p.array() > 1 + beyond).any()) {
             contact.place = p.cwiseMax(0.0).cwiseMin(1.0);
             plane.is_met = false;
             return false;

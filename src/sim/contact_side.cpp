@@ -142,7 +142,7 @@ void ContactSide::connections_changed() {
 void ContactSide::find_cells() {
     rim_ = molded_->skin();
     if (touch_.size() > touch_.own()) {
-        cut_ = std::make_shared<const CutSurface>(matter_->lattice, touch_.whole());
+        cut_ = std::make_shared<const CutSurface>(*matter_, touch_.whole());
         std::vector<CellId> both;
         std::set_union(rim_.begin(), rim_.end(), cut_->skin().begin(), cut_->skin().end(),
                        std::back_inserter(both));
@@ -200,11 +200,12 @@ RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
     const std::optional<RestSurface::Depth> own = molded_depth(site, cell, place);
     if (!cut_->is_rim(cell)) return *own;
     RestSurface::Depth face = cut_->at(cell, place);
-    // The new surface is half a cell before the face at most, so that nothing that is held there
-    // is let go at once.
-    const Vec3 beyond = place - place.cwiseMax(0.0).cwiseMin(1.0);
-    const double far = beyond.norm();
-    if (far - 0.5 > face.distance && far > 0) face = {far - 0.5, beyond / far};
+    // The new surface is no farther before the face, so that nothing that is held there is let go
+    // at once.
+    const Vec3 out = place - place.cwiseMax(0.0).cwiseMin(1.0);
+    const double far = out.norm();
+    const double most = beyond(cell);
+    if (far - most > face.distance && far > 0) face = {far - most, out / far};
     return own && own->distance > face.distance ? *own : face;
 }
 
@@ -245,22 +246,25 @@ void ContactSide::forget_near() {
 
 void ContactSide::find_cracks() {
     is_crack_.assign(touch_.size() - touch_.own(), 0);
+    for (const auto& [at, point] : touch_.faces()) {
+        const auto& [cell, face] = at;
+        if (!touch_.meets(point)) continue;
+        const Vec3i beyond =
+            touch_.home()[std::size_t(point)] + (face & 1 ? 1 : -1) * Vec3i::Unit(face >> 1);
+        const Lattice& lattice = matter_->lattice;
+        is_crack_[std::size_t(point) - touch_.own()] =
+            closes_as_crack(*matter_, lattice.cell_row(lattice.cell_at(beyond)), face >> 1);
+    }
     for (std::size_t n = 0; n < is_crack_.size(); ++n) {
         const int point = static_cast<int>(touch_.own() + n);
-        is_crack_[n] = touch_.meets(point) && looks_into_crack(point);
+        if (!touch_.is_loose(point) || !touch_.meets(point)) continue;
+        is_crack_[n] = stands_in_crack(point);
     }
 }
 
-// Of a face, into the cell beyond it, in whose middle its point lies at rest; a particle by itself
-// into all cells that it is a corner of.
-bool ContactSide::looks_into_crack(int point) const {
+// A particle by itself: all cells that it is a corner of.
+bool ContactSide::stands_in_crack(int point) const {
     const Lattice& lattice = matter_->lattice;
-    if (!touch_.is_loose(point)) {
-        const Vec3i site = own_place(point).array().floor().cast<int>();
-        int axis = 0;
-        (site - touch_.home()[std::size_t(point)]).cwiseAbs().maxCoeff(&axis);
-        return closes_as_crack(*matter_, lattice.cell_row(lattice.cell_at(site)), axis);
-    }
     const Vec3i site = own_place(point).array().round().cast<int>();
     for (int corner = 0; corner < 8; ++corner) {
         const CellId cell = lattice.cell_at(site - Vec3i(corner & 1, corner >> 1 & 1, corner >> 2));

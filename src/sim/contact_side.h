@@ -40,9 +40,15 @@ class ContactSide {
     // Of all ways that this side is part of.
     ContactPatch& patch() { return patch_; }
     const ContactPatch& patch() const { return patch_; }
+    // How far outside of a cell new surface may lie, in cells; and of any.
+    double beyond(CellId cell) const {
+        return cut_ != nullptr ? cut_->beyond(cell) : CutSurface::kBeforeBreak;
+    }
+    double beyond() const {
+        return matter_->cut.empty() ? CutSurface::kBeforeBreak : CutSurface::kBeforeCut;
+    }
     // How deep a place of a cell lies below the surface as molded or, where matter is cut or
-    // broken, below the new one, whichever is nearer. Before a new face it may lie half a cell
-    // outside.
+    // broken, below the new one, whichever is nearer. Before a new face it may lie outside.
     RestSurface::Depth depth(const Vec3i& site, CellId cell, const Vec3& place) const {
         if (cut_ != nullptr) return least_depth(site, cell, place);
         const bool inside = (place.array() >= 0).all() && (place.array() <= 1).all();
@@ -97,7 +103,7 @@ class ContactSide {
     void find_near();
     void forget_near();  // points are others, not only more
     void find_cracks();
-    bool looks_into_crack(int point) const;
+    bool stands_in_crack(int point) const;
     Vec3 own_place(int point) const { return own_place_[point].cast<double>(); }
 
     Aggregate* matter_;

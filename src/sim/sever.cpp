@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/box.h"
 #include "geometry/triangle_tree.h"
@@ -87,10 +88,12 @@ TriMesh swept_mesh(const std::vector<Triangle>& swept) {
 
 namespace {
 
+Vec3 shift_of(double spacing) { return spacing * Vec3(1.3e-6, 1.7e-6, 0.9e-6); }
+
 class SweptSurface {
   public:
     SweptSurface(const std::vector<Triangle>& swept, double spacing) {
-        const Vec3 shift = spacing * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+        const Vec3 shift = shift_of(spacing);
         for (Triangle t : swept) {
             Box box;
             for (Vec3& corner : t) box.grow(corner += shift);
@@ -103,14 +106,18 @@ class SweptSurface {
     }
 
     bool is_empty() const { return triangle_.empty(); }
-    bool crosses(const Vec3& from, const Vec3& to) const {
+    // Null where none crosses.
+    const Triangle* crossing(const Vec3& from, const Vec3& to) const {
         const Box own = {from.cwiseMin(to), from.cwiseMax(to)};
-        if (!own.overlaps(all_)) return false;
+        if (!own.overlaps(all_)) return nullptr;
         for (std::size_t t = 0; t < triangle_.size(); ++t) {
-            if (own.overlaps(box_[t]) && crosses_triangle(from, to, triangle_[t])) return true;
+            if (own.overlaps(box_[t]) && crosses_triangle(from, to, triangle_[t])) {
+                return &triangle_[t];
+            }
         }
-        return false;
+        return nullptr;
     }
+    bool crosses(const Vec3& from, const Vec3& to) const { return crossing(from, to) != nullptr; }
 
   private:
     std::vector<Triangle> triangle_;
@@ -124,6 +131,49 @@ bool crosses(const std::vector<Triangle>& swept, const Vec3& from, const Vec3& t
     return SweptSurface(swept, spacing).crosses(from, to);
 }
 
+namespace {
+
+Vec3i site_of(const Aggregate& matter, ParticleId p) {
+    const Vec3 at = matter.particle_reference.at(std::size_t(p)) - matter.lattice.origin;
+    return (at / matter.lattice.spacing).array().round().cast<int>();
+}
+
+// Mean deformation of a whole cell that the connection lies in; none where there is no such cell.
+std::optional<Mat3> deformation_at(const Aggregate& matter, const SeverEvent& event) {
+    const Vec3i a = site_of(matter, event.lower), b = site_of(matter, event.upper);
+    for (int back = 0; back < 8; ++back) {
+        const Vec3i step = corner_step(back);
+        if ((step.array() * (a - b).array() != 0).any()) continue;
+        const CellId cell = matter.lattice.cell_at(a.cwiseMin(b) - step);
+        if (cell < 0 || !cell_is_whole(matter, matter.lattice.cell_row(cell))) continue;
+        Mat3 sum = Mat3::Zero();
+        const auto corners = matter.lattice.cell_corners(cell);
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 from_middle = corner_step(c).cast<double>() - Vec3::Constant(0.5);
+            sum += matter.particle_position.at(corners[c]) * from_middle.transpose();
+        }
+        return Mat3(sum / (2 * matter.lattice.spacing));
+    }
+    return {};
+}
+
+// By the blade where it is, not as it is shifted.
+void note_crossing(const Aggregate& matter, const Triangle& shifted, const Vec3& from,
+                   const Vec3& to, SeverEvent& event) {
+    Triangle t = shifted;
+    for (Vec3& corner : t) corner -= shift_of(matter.lattice.spacing);
+    const double before = volume6(t[0], t[1], t[2], from), after = volume6(t[0], t[1], t[2], to);
+    event.share = static_cast<float>(std::clamp(before / (before - after), 0.0, 1.0));
+    Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    if (const auto deformation = deformation_at(matter, event)) {
+        normal = deformation->transpose() * normal;
+    }
+    normal.normalize();
+    for (int d = 0; d < 3; ++d) event.normal[std::size_t(d)] = static_cast<float>(normal[d]);
+}
+
+}  // namespace
+
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<Triangle>& swept) {
     const SweptSurface surface(swept, matter.lattice.spacing);
@@ -136,8 +186,10 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
             if (weight[lower] <= 0) continue;
             const Vec3 from = matter.particle_position.at(lower);
             const Vec3 to = matter.particle_position.at(span.upper + n);
-            if (!surface.crosses(from, to)) continue;
+            const Triangle* blade = surface.crossing(from, to);
+            if (blade == nullptr) continue;
             events.push_back({span.direction, lower, span.upper + n, weight[lower]});
+            note_crossing(matter, *blade, from, to, events.back());
         }
     }
     return events;
@@ -182,7 +234,13 @@ void mark_met(std::deque<std::vector<SeverEvent>>& plan, const Aggregate& matter
 }
 
 void sever(Aggregate& matter, std::span<const SeverEvent> events) {
-    for (const SeverEvent& e : events) matter.connection[e.direction].weight.set(e.lower, 0);
+    for (const SeverEvent& e : events) {
+        matter.connection[e.direction].weight.set(e.lower, 0);
+        if (e.normal == SeverEvent().normal) continue;
+        const Vec3i a = site_of(matter, e.lower), b = site_of(matter, e.upper);
+        const Eigen::Vector3f at = a.cast<float>() + e.share * (b - a).cast<float>();
+        matter.cut.push_back({{at.x(), at.y(), at.z()}, e.normal});
+    }
 }
 
 std::vector<PointSide> sides_of(const Aggregate& matter, std::span<const SeverEvent> events,

@@ -21,7 +21,9 @@ struct SeverEvent {
     ParticleId upper;
     float weight;  // share of the section that it had
     int blade = 0;
-    bool met = false;  // a blade has been beside it since it was planned
+    bool met = false;    // a blade has been beside it since it was planned
+    float share = 0.5f;  // of the way from the lower end, at which the blade crosses it
+    std::array<float, 3> normal = {0, 0, 0};  // of the path there, at molding (CutPoint)
 };
 
 // The surface that the blade's edge sweeps between two poses, as triangles in the world. Neighbours
@@ -54,6 +56,7 @@ void name_blades(std::span<SeverEvent> events, const Aggregate& matter, const Ap
 void mark_met(std::deque<std::vector<SeverEvent>>& plan, const Aggregate& matter,
               const std::vector<std::array<Vec3, 3>>& swept, double reach);
 
+// The matter keeps where its blades went.
 void sever(Aggregate& matter, std::span<const SeverEvent> events);
 
 // Of the surface's points in and beside cells that these events part the sides on which that leaves

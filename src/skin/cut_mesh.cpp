@@ -240,7 +240,7 @@ class PlaneCut {
         }
     }
 
-    BodyPlace on_edge(const CutPoint& cut, double share) const {
+    BodyPlace on_edge(const EdgeCut& cut, double share) const {
         const std::array<BodyPlace, 2> ends = {mount_.place(cut.low), mount_.place(cut.high)};
         return pieces_.beside(ends[0].reference + share * (ends[1].reference - ends[0].reference),
                               ends);
@@ -251,7 +251,7 @@ class PlaneCut {
     // jumps.
     void find_cut_places(const SurfaceSplit& split, std::vector<BodyPlace>& places,
                          std::vector<double>& share, std::vector<Vec3>& world) const {
-        for (const CutPoint& cut : split.cut) {
+        for (const EdgeCut& cut : split.cut) {
             double s0 = 0, s1 = 1;
             double h0 = plane_.height(position_[cut.low]), h1 = plane_.height(position_[cut.high]);
             double s = cut.share;

@@ -69,7 +69,7 @@ class Splitter {
     bool on_plane(int raw) const { return raw >= old_count() || sign_[raw] == 0; }
     Vec3 place(int raw, const std::vector<Vec3>& position) const {
         if (raw < old_count()) return position[raw];
-        const CutPoint& cut = split_.cut[raw - old_count()];
+        const EdgeCut& cut = split_.cut[raw - old_count()];
         return position[cut.low] + cut.share * (position[cut.high] - position[cut.low]);
     }
     Vec3 place(int raw) const { return place(raw, position_); }

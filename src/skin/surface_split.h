@@ -13,7 +13,7 @@
 namespace swage {
 
 // A new vertex on an edge of the old surface.
-struct CutPoint {
+struct EdgeCut {
     int low, high;  // old vertices, low below high by number
     double share;   // of the way from low to high
 };
@@ -40,7 +40,7 @@ struct SplitVertex {
 };
 
 struct SurfaceSplit {
-    std::vector<CutPoint> cut;
+    std::vector<EdgeCut> cut;
     std::vector<Vec3> cap_point;  // [m], inside the body or on its rim, on the plane
     std::map<int, RimPoint> rim;  // of those, by what they are raw
     std::vector<SplitTriangle> triangle;

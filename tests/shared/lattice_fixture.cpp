@@ -78,9 +78,16 @@ void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
             const Vec3 a = m.particle_position.at(span.lower + n);
             const Vec3 b = m.particle_position.at(span.upper + n);
             const bool crosses = (normal.dot(a - on_plane) >= 0) != (normal.dot(b - on_plane) >= 0);
-            if (crosses && (!where || where(0.5 * (a + b)))) {
-                m.connection[span.direction].weight.set(span.lower + n, 0);
-            }
+            if (!crosses || (where && !where(0.5 * (a + b)))) continue;
+            m.connection[span.direction].weight.set(span.lower + n, 0);
+            const double share = std::clamp(normal.dot(point - a) / normal.dot(b - a), 0.0, 1.0);
+            const Vec3 from = m.particle_reference.at(span.lower + n),
+                       to = m.particle_reference.at(span.upper + n);
+            const Vec3 at = (from + share * (to - from) - m.lattice.origin) / m.lattice.spacing;
+            const auto in_floats = [](const Vec3& v) {
+                return std::array<float, 3>{float(v.x()), float(v.y()), float(v.z())};
+            };
+            m.cut.push_back({in_floats(at), in_floats(normal)});
         }
     }
     keep_sides(m, sides);

@@ -17,7 +17,8 @@ Vec3 gradient_of(const Distance& distance, const Vec3& at, double reach);
 Aggregate make_shape(const Distance& distance, const Vec3& low, const Vec3i& count, double a);
 
 // Severs every connection that crosses the plane, as a blade does: a particle on it counts as
-// being on the positive side. Only connections whose middle satisfies `where`.
+// being on the positive side. Only connections whose middle satisfies `where`. The normal is kept
+// as it would be of matter that is not turned.
 void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
                  const std::function<bool(const Vec3&)>& where = nullptr);
 

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where blades have gone through a body, near a place: the planes of their paths at the connections
+// that they severed. All in cells from the lattice's origin, in the shape at molding.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "matter/aggregate.h"
+
+namespace swage {
+
+struct CutPlane {
+    Vec3 place, normal;  // unit, to either side
+
+    // How far it is to what lies of the plane within a cell of `place`, as a blade's path ends.
+    double distance(const Vec3& from) const;
+};
+
+class CutPlanes {
+  public:
+    explicit CutPlanes(const Aggregate& matter);
+
+    // Those that come within two cells, the nearest of each of up to three directions, which differ
+    // by a quarter of a right angle or more; the nearest first.
+    std::vector<CutPlane> around(const Vec3& place) const;
+
+    bool empty() const { return point_.empty(); }
+
+  private:
+    struct Binned {
+        std::uint64_t bin;
+        int point;
+    };
+    std::vector<CutPoint> point_;
+    std::vector<Binned> binned_;  // in order
+};
+
+// The plane at which a blade has ended the matter before this face of a whole cell (2 axis + side),
+// behind which no cell is whole; none where a load broke it.
+std::optional<CutPlane> cut_before(const Aggregate& matter, const CutPlanes& cuts,
+                                   const Vec3i& site, int face);
+
+}  // namespace swage

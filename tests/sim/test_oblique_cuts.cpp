@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces that a blade has laid open, however it stood to the lattice.
+#include "sim/contact_side.h"
+#include "tests/catch.h"
+#include "tests/shared/lattice_fixture.h"
+#include "tests/sim/loads_fixture.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kA = 0.1;  // a cell
+
+}  // namespace
+
+TEST_CASE("a cut is where the blade went: its points lie there, and depth is told from there") {
+    const Vec3 normal = GENERATE(Vec3(0, 1, 0), Vec3(0.09, 1, 0), Vec3(0.36, 1, 0), Vec3(1, 1, 0),
+                                 Vec3(1.7, 1, 0), Vec3(0.3, 0.8, 0.5), Vec3(1, -1, 1))
+                            .normalized();
+    const double off = GENERATE(-0.3, 0.05, 0.4);
+    CAPTURE(normal.transpose(), off);
+    Aggregate block = make_block(10, 10, 10, kA, kSpringy);
+    const Vec3 at = off * kA * normal;
+    sever_plane(block, at, normal);
+    ContactSide side(block, true, nullptr);
+    const auto beyond = [&](const Vec3& x) { return normal.dot(x - at) / kA; };
+    const auto is_inner = [](const Vec3& x) { return x.cwiseAbs().maxCoeff() < 3 * kA; };
+    double area[2] = {};
+    int points = 0;
+    for (std::size_t p = side.own_points(); p < side.points().size(); ++p) {
+        if (!side.meets(int(p)) || side.is_loose(int(p))) continue;
+        const Vec3 x = side.points().reference(p, block.particle_reference);
+        CHECK(std::abs(beyond(x)) < 1e-5);
+        const double faces = side.points().normal(p).dot(normal);
+        CHECK(std::abs(faces) > 1 - 1e-6);
+        if (is_inner(x)) area[faces > 0] += side.points().area(p) / (kA * kA), ++points;
+    }
+    CHECK(points > 20);
+    // Of the plane what lies within the same box: by its samples, a tenth of a cell apart.
+    const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+    double section = 0;
+    for (int i = -50; i <= 50; ++i) {
+        for (int j = -50; j <= 50; ++j) {
+            section += is_inner(at + 0.1 * kA * (i * u + j * v)) ? 0.01 : 0;
+        }
+    }
+    CHECK(area[0] == Approx(section).epsilon(0.2));
+    CHECK(area[1] == Approx(section).epsilon(0.2));
+    // And how deep places lie, in whole cells and before them.
+    int places = 0;
+    for (CellId cell : side.rim()) {
+        if (!side.is_whole(cell)) continue;
+        const Vec3i site = block.lattice.cell_site(cell);
+        for (int n = 0; n < 27; ++n) {
+            const Vec3 place = 0.6 * Vec3(n % 3, n / 3 % 3, n / 9) - Vec3::Constant(0.1);
+            const Vec3 x = block.lattice.origin + kA * (site.cast<double>() + place);
+            const Vec3 middle =
+                block.lattice.origin + kA * (site.cast<double>() + Vec3::Constant(0.5));
+            const double far = beyond(x) * (beyond(middle) < 0 ? 1 : -1);
+            if (!is_inner(x) || far < -0.7) continue;
+            CHECK(side.depth(site, cell, place).distance == Approx(far).margin(1e-3));
+            ++places;
+        }
+    }
+    CHECK(places > 100);
+}
+
+TEST_CASE("a piece slides down an oblique cut as on a smooth plane") {
+    const double slope = GENERATE(0.1, 0.3, 0.6, 1.0);  // [rad]
+    CAPTURE(slope);
+    Material matter = kSpringy;
+    matter.young_modulus = 1e7;
+    matter.damping_ratio = 0.1;
+    matter.friction = 0;
+    Aggregate block = make_block(14, 14, 6, kA, matter);
+    const Vec3 normal(std::sin(slope), std::cos(slope), 0),
+        down(std::cos(slope), -std::sin(slope), 0);
+    sever_plane(block, 0.13 * kA * normal, normal);
+    const Pieces pieces = find_pieces(block);
+    REQUIRE(pieces.count == 2);
+    Apparatus apparatus;
+    apparatus.grip.push_back(hold(block, points_where(block, [&](const Vec3& x) {
+                                      return std::min(x.x(), x.y()) < -0.69 &&
+                                             normal.dot(x) < -0.05;
+                                  })));
+    SimSettings settings = motion_settings();
+    settings.self_contact = true;
+    settings.gravity = Vec3(0, -9.81, 0);
+    Simulation simulation(block, apparatus, settings);
+    const int upper = pieces.particle_piece[std::size_t(block.particle_count()) - 1];
+    const auto middle = [&] {
+        Vec3 sum = Vec3::Zero();
+        double mass = 0;
+        for (std::size_t p = 0; p < block.particle_count(); ++p) {
+            if (pieces.particle_piece[p] != upper) continue;
+            sum += block.particle_mass[p] * block.particle_position.at(p);
+            mass += block.particle_mass[p];
+        }
+        return Vec3(sum / mass);
+    };
+    const Vec3 before = middle();
+    FrameReport report;
+    for (int f = 0; f < 10; ++f) {
+        report = simulation.advance(drive_of(apparatus, 0.02 * f, 1),
+                                    drive_of(apparatus, 0.02 * (f + 1), 1));
+    }
+    const Vec3 way = middle() - before;
+    const double expected = 0.5 * 9.81 * std::sin(slope) * 0.2 * 0.2;
+    CHECK(way.dot(down) == Approx(expected).epsilon(0.05));
+    CHECK(std::abs(way.dot(normal)) < 0.1 * kA);
+    CHECK(std::abs(report.remainder) < 0.01 * report.gravity_work);
+}
