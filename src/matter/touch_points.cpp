@@ -77,6 +77,13 @@ void TouchPoints::add_loose(const Aggregate& matter) {
     }
 }
 
+void TouchPoints::leave_out(const std::vector<ParticleId>& particles) {
+    for (ParticleId p : particles) {
+        const auto point = loose_.find(p);
+        if (point != loose_.end()) meets_[std::size_t(point->second)] = 0;
+    }
+}
+
 // Of the body's own points those in parted cells that a blade has told the side of.
 std::vector<TouchPoints::Carried> TouchPoints::carry_beside(const Aggregate& matter) {
     const std::size_t patches = matter.surface.size();

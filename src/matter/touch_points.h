@@ -41,6 +41,9 @@ class TouchPoints {
     // order.
     std::vector<Carried> connections_changed(const Aggregate& matter);
 
+    // Of particles by themselves these meet nothing until the next change.
+    void leave_out(const std::vector<ParticleId>& particles);
+
     const SurfacePoints& points() const { return points_; }
     std::size_t size() const { return points_.size(); }
     // The body's own; those of new surface come after them.

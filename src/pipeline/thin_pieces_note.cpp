@@ -42,7 +42,7 @@ std::vector<std::string> thin_pieces_notes(const std::vector<WorkPiece>& bodies,
                                            const SimSettings& sim) {
     std::vector<std::string> notes;
     for (const WorkPiece& body : bodies) {
-        if (!sim.self_contact) break;
+        if (!sim.self_contact || in_motion(sim.solver)) break;  // sim/thin_piece.h
         std::string note = note_of(bodies, body);
         if (!note.empty()) notes.push_back(std::move(note));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of pieces that blades have left no whole cell of, so that they meet by their particles alone
-// (matter/touch_points.h): others, up to half a cell deep in them, and not each other.
+// Of pieces that blades have left no whole cell of, so that in equilibria they meet by their
+// particles alone (matter/touch_points.h): others, up to half a cell deep in them, and not each
+// other.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@
 namespace swage {
 
 // Of each of these bodies of which such pieces hold a hundredth of the mass, where `sim` has pieces
-// meet: that. What breaks goes to crumbs by itself, and nothing is said of it.
+// meet and come to rest: that. What breaks goes to crumbs by itself, and nothing is said of it.
 std::vector<std::string> thin_pieces_notes(const std::vector<WorkPiece>& bodies,
                                            const SimSettings& sim);
 

@@ -18,19 +18,20 @@ namespace {
 
 constexpr double kWay = 0.45;              // spacings that anything may go between searches
 constexpr std::size_t kThreadShare = 128;  // contacts that a thread is worth waking for
+constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
 BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSettings& settings)
-    : least_spacing_(std::numeric_limits<double>::infinity()) {
+    : settings_(settings), least_spacing_(std::numeric_limits<double>::infinity()) {
     if (bodies.size() < 2 && !settings.self_contact) return;
-    side_.reserve(bodies.size());
+    bodies_ = bodies.size();
     for (Aggregate* body : bodies) {
-        const auto alike = std::find_if(side_.begin(), side_.end(), [&](const ContactSide& side) {
-            return RestSurface::is_shared(side.matter(), *body);
+        const auto alike = std::find_if(side_.begin(), side_.end(), [&](const auto& side) {
+            return RestSurface::is_shared(side->matter(), *body);
         });
-        side_.emplace_back(*body, settings.self_contact,
-                           alike == side_.end() ? nullptr : alike->molded());
+        side_.push_back(std::make_unique<ContactSide>(
+            *body, settings.self_contact, alike == side_.end() ? nullptr : (*alike)->molded()));
         least_spacing_ = std::min(least_spacing_, body->lattice.spacing);
     }
     for (std::size_t a = 0; a < bodies.size(); ++a) {
@@ -38,9 +39,120 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
             if (a == b && !settings.self_contact) continue;
             const std::size_t row = bodies.size() - !settings.self_contact;
             pair_.push_back({a, b, b * row + a - (!settings.self_contact && a > b)});
-            way_.emplace_back(side_[a], side_[b], settings);
+            way_.emplace_back(*side_[a], *side_[b], settings);
         }
     }
+    find_thin();
+}
+
+// Those that are as they were go on.
+void BodyContact::find_thin() {
+    if (!in_motion(settings_.solver)) return;
+    std::vector<Thin> found;
+    bool is_same = true;
+    for (std::size_t b = 0; b < bodies_; ++b) {
+        ContactSide& side = *side_[b];
+        std::vector<ParticleId> all;
+        for (std::vector<ParticleId>& one : thin_pieces(side.matter())) {
+            const std::size_t n = found.size();
+            const auto was = std::find_if(thin_.begin(), thin_.end(), [&](const Thin& thin) {
+                return thin.piece && thin.body == b && thin.piece->particles() == one;
+            });
+            is_same = is_same && was == thin_.begin() + std::ptrdiff_t(n);
+            const std::vector<ParticleId> particles = one;
+            std::unique_ptr<ThinPiece> piece =
+                was != thin_.end() ? std::move(was->piece)
+                                   : ThinPiece::find(side.matter(), *side.molded(), std::move(one));
+            if (piece == nullptr) continue;
+            all.insert(all.end(), particles.begin(), particles.end());
+            found.push_back({b, std::move(piece)});
+        }
+        if (!all.empty()) side.leave_out(all);
+    }
+    if (is_same && found.size() == thin_.size()) {
+        thin_ = std::move(found);
+    } else {
+        replace_thin(std::move(found));
+    }
+}
+
+// The ways between bodies come first, and stay. What lies in a thin piece as that comes to be has
+// not been pressed into it: its particles alone may have met all else until then.
+void BodyContact::replace_thin(std::vector<Thin> thin) {
+    const std::size_t between_bodies =
+        std::size_t(std::count_if(pair_.begin(), pair_.end(), [&](const Pair& pair) {
+            return pair.from < bodies_ && pair.onto < bodies_;
+        }));
+    std::vector<std::unique_ptr<ContactSide>> sides;
+    std::vector<std::size_t> was(bodies_ + thin.size(), kNew);  // the side of each
+    for (std::size_t b = 0; b < bodies_; ++b) {
+        was[b] = b;
+        sides.push_back(std::move(side_[b]));
+    }
+    for (std::size_t n = 0; n < thin.size(); ++n) {
+        for (std::size_t s = bodies_; s < side_.size(); ++s) {
+            if (side_[s] && &side_[s]->matter() == &thin[n].piece->matter()) was[bodies_ + n] = s;
+        }
+        sides.push_back(was[bodies_ + n] != kNew ? std::move(side_[was[bodies_ + n]])
+                                                 : std::make_unique<ContactSide>(
+                                                       thin[n].piece->matter(), false, nullptr));
+    }
+    std::vector<Pair> pairs(pair_.begin(), pair_.begin() + std::ptrdiff_t(between_bodies));
+    std::vector<ContactWay> ways;
+    std::vector<std::size_t> near;
+    std::vector<char> taken(way_.size(), 0);
+    const auto take = [&](std::size_t w) {
+        if (std::binary_search(near_.begin(), near_.end(), w)) near.push_back(ways.size());
+        ways.push_back(std::move(way_[w]));
+        taken[w] = 1;
+    };
+    for (std::size_t w = 0; w < between_bodies; ++w) take(w);
+    const auto body_of = [&](std::size_t side) {
+        return side < bodies_ ? side : thin[side - bodies_].body;
+    };
+    const auto add = [&](std::size_t from, std::size_t onto, std::size_t back) {
+        std::size_t old = between_bodies;
+        while (old < pair_.size() &&
+               !(pair_[old].from == was[from] && pair_[old].onto == was[onto])) {
+            ++old;
+        }
+        pairs.push_back({from, onto, back});
+        if (old < pair_.size()) return take(old);
+        ways.emplace_back(*sides[from], *sides[onto], settings_);
+        ways.back().come_late();
+    };
+    for (std::size_t s = bodies_; s < sides.size(); ++s) {
+        for (std::size_t other = 0; other < s; ++other) {
+            if (body_of(s) == body_of(other) && !settings_.self_contact) continue;
+            const std::size_t first = ways.size();
+            add(other, s, first + 1);
+            add(s, other, first);
+        }
+    }
+    let_go_.resize(bodies_, 0.0);
+    for (std::size_t w = 0; w < way_.size(); ++w) {
+        if (taken[w]) continue;
+        for (std::size_t side : {pair_[w].from, pair_[w].onto}) {
+            let_go_[this->body_of(side)] += way_[w].sums().stored;
+        }
+    }
+    side_ = std::move(sides);
+    thin_ = std::move(thin);
+    pair_ = std::move(pairs);
+    way_ = std::move(ways);
+    near_ = std::move(near);
+    listed_.clear();
+    allowance_ = -1;
+}
+
+std::vector<char> BodyContact::of_sides(const std::vector<char>& of_bodies) const {
+    std::vector<char> all = of_bodies;
+    for (const Thin& thin : thin_) all.push_back(of_bodies[thin.body]);
+    return all;
+}
+
+void BodyContact::follow() {
+    for (const Thin& thin : thin_) thin.piece->follow();
 }
 
 void BodyContact::limit_stiffness(double step) {
@@ -50,7 +162,8 @@ void BodyContact::limit_stiffness(double step) {
 
 void BodyContact::connections_changed(std::size_t body) {
     if (!acts()) return;
-    side_[body].connections_changed();
+    side_[body]->connections_changed();
+    find_thin();
     for (std::size_t w = 0; w < way_.size(); ++w) {
         if (pair_[w].from != body && pair_[w].onto != body) continue;
         way_[w].surfaces_changed(pair_[w].from == body, step_);
@@ -80,10 +193,10 @@ void BodyContact::restore(const State& state) {
 
 void BodyContact::hand_on(ByteWriter& out) {
     out(side_.size(), listed_, allowance_);
-    for (ContactSide& side : side_) {
-        const bool is_broken = side.points().size() > side.own_points();
+    for (const std::unique_ptr<ContactSide>& side : side_) {
+        const bool is_broken = side->points().size() > side->own_points();
         out(is_broken);
-        if (is_broken) side.visit_points(out);
+        if (is_broken) side->visit_points(out);
     }
     out(std::uint64_t(way_.size()));
     for (std::size_t w = 0; w < way_.size(); ++w) {
@@ -97,8 +210,8 @@ void BodyContact::hand_on(ByteWriter& out) {
 void BodyContact::take_on(ByteReader& in) {
     if (in.get<std::size_t>() != side_.size()) return;
     in(listed_, allowance_);
-    for (ContactSide& side : side_) {
-        if (in.get<bool>()) side.visit_points(in);
+    for (const std::unique_ptr<ContactSide>& side : side_) {
+        if (in.get<bool>()) side->visit_points(in);
     }
     const auto count = in.get<std::uint64_t>();
     if (count != way_.size()) allowance_ = -1;
@@ -114,7 +227,7 @@ void BodyContact::take_on(ByteReader& in) {
             if (near) near_.push_back(w);
         }
     }
-    for (ContactSide& side : side_) side.patch().clear();
+    for (const std::unique_ptr<ContactSide>& side : side_) side->patch().clear();
     for (std::size_t w : near_) way_[w].resolve();
 }
 
@@ -124,31 +237,37 @@ std::size_t BodyContact::candidates() const {
     return count;
 }
 
-void BodyContact::renew(const std::vector<char>& asleep) {
+void BodyContact::renew(const std::vector<char>& bodies_asleep) {
     if (!acts()) return;
+    follow();
+    const std::vector<char> asleep = of_sides(bodies_asleep);
     double farthest = 0;
     for (std::size_t b = 0; b < listed_.size(); ++b) {
         if (asleep[b]) continue;
-        const Vec3Array& x = side_[b].matter().particle_position;
-        const std::vector<ParticleId>& skin = side_[b].skin();
+        const Vec3Array& x = side_[b]->matter().particle_position;
+        const std::vector<ParticleId>& skin = side_[b]->skin();
         for (std::size_t n = 0; n < skin.size() && allowance_ >= 0; ++n) {
             farthest = std::max(farthest, (x.at(skin[n]) - listed_[b][n]).squaredNorm());
         }
     }
-    if (!(farthest <= allowance_ * allowance_) || allowance_ < 0) renew_all(asleep);
+    if (!(farthest <= allowance_ * allowance_) || allowance_ < 0) {
+        renew_all(bodies_asleep);
+    }
 }
 
-void BodyContact::renew_all(const std::vector<char>& asleep) {
+void BodyContact::renew_all(const std::vector<char>& bodies_asleep) {
     if (!acts()) return;
+    follow();
+    const std::vector<char> asleep = of_sides(bodies_asleep);
     std::vector<Box> box(side_.size());
     listed_.resize(side_.size());
     for (std::size_t b = 0; b < side_.size(); ++b) {
-        const Vec3Array& x = side_[b].matter().particle_position;
-        for (ParticleId p : side_[b].skin()) box[b].grow(x.at(p));
+        const Vec3Array& x = side_[b]->matter().particle_position;
+        for (ParticleId p : side_[b]->skin()) box[b].grow(x.at(p));
         // What lies still is found where it was when it was listed.
         if (asleep[b] && !listed_[b].empty()) continue;
         listed_[b].clear();
-        for (ParticleId p : side_[b].skin()) listed_[b].push_back(x.at(p));
+        for (ParticleId p : side_[b]->skin()) listed_[b].push_back(x.at(p));
     }
     const double step = kWay * least_spacing_;
     allowance_ = std::numeric_limits<double>::infinity();
@@ -169,26 +288,32 @@ void BodyContact::renew_all(const std::vector<char>& asleep) {
             way_[w].part();
         }
     }
-    for (ContactSide& side : side_) side.patch().clear();
+    for (const std::unique_ptr<ContactSide>& side : side_) side->patch().clear();
     for (std::size_t w : near_) way_[w].resolve();
 }
 
 std::vector<std::size_t> BodyContact::groups() const {
-    DisjointSets sets(side_.size());
+    DisjointSets sets(bodies_);
     for (std::size_t w : near_) {
         if (way_[w].contacts().contact.empty()) continue;
-        sets.unite(static_cast<int>(pair_[w].from), static_cast<int>(pair_[w].onto));
+        sets.unite(static_cast<int>(body_of(pair_[w].from)),
+                   static_cast<int>(body_of(pair_[w].onto)));
     }
     std::vector<std::size_t> group;
-    for (int b = 0; b < static_cast<int>(side_.size()); ++b) {
+    for (int b = 0; b < static_cast<int>(bodies_); ++b) {
         group.push_back(static_cast<std::size_t>(sets.root(b)));
     }
     return group;
 }
 
-void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
-                             const std::vector<char>& asleep, std::vector<ContactSums>& sums,
-                             Meet meet) {
+void BodyContact::add_forces(const std::vector<Vec3Array*>& body_force, const Vec3& gravity,
+                             double step, const std::vector<char>& bodies_asleep,
+                             std::vector<ContactSums>& sums, Meet meet) {
+    const std::vector<char> asleep = of_sides(bodies_asleep);
+    std::vector<Vec3Array*> force = body_force;
+    for (const Thin& thin : thin_) {
+        force.push_back(&thin.piece->begin_forces(*body_force[thin.body]));
+    }
     std::vector<char> acts(side_.size(), 0);
     std::vector<std::size_t> awake;
     sums.assign(side_.size(), {});
@@ -201,7 +326,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
         acts[pair_[w].from] = acts[pair_[w].onto] = 1;
     }
     for (std::size_t b = 0; b < side_.size(); ++b) {
-        if (acts[b]) side_[b].patch().read(*force[b]);
+        if (acts[b]) side_[b]->patch().read(*force[b]);
     }
     std::vector<ContactHeld> held(way_.size());
     const std::size_t threads = candidates() / kThreadShare;
@@ -218,7 +343,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
         way_[w].push(share_of(own.now, other.now), 0.5 * both.gone, 0.5 * both.turned);
     }
     for (std::size_t b = 0; b < side_.size(); ++b) {
-        if (acts[b]) side_[b].patch().find_springs();
+        if (acts[b]) side_[b]->patch().find_springs();
     }
     parallel_for(awake.size(), threads, [&](std::size_t n) { way_[awake[n]].respond(step, meet); });
     for (std::size_t w : awake) way_[w].answer();
@@ -237,12 +362,19 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
         way_[w].keep_more(0.5 * (held_by_both(own, other) - counted));
     }
     for (std::size_t b = 0; b < side_.size(); ++b) {
-        if (acts[b]) side_[b].patch().write(*force[b], gravity, step, sums[b]);
+        if (acts[b]) side_[b]->patch().write(*force[b], gravity, step, sums[b]);
+        if (!acts[b] || b < bodies_) continue;
+        const Thin& thin = thin_[b - bodies_];
+        thin.piece->end_forces(gravity, step, *body_force[thin.body], sums[b]);
     }
     for (std::size_t w : near_) {
         sums[pair_[w].from].join(way_[w].sums());
         sums[pair_[w].onto].join(way_[w].sums());
     }
+    for (std::size_t b = bodies_; b < side_.size(); ++b) sums[body_of(b)].join(sums[b]);
+    sums.resize(bodies_);
+    for (std::size_t b = 0; b < let_go_.size(); ++b) sums[b].damped += let_go_[b];
+    let_go_.clear();
 }
 
 void BodyContact::add_stiffness(std::vector<double>& stiffness) const {
@@ -265,7 +397,8 @@ void BodyContact::meet_anew() {
     for (std::size_t w : near_) way_[w].meet_anew();
 }
 
-void BodyContact::commit(const std::vector<char>& asleep) {
+void BodyContact::commit(const std::vector<char>& bodies_asleep) {
+    const std::vector<char> asleep = of_sides(bodies_asleep);
     for (std::size_t w = 0; w < way_.size(); ++w) {
         if (!pair_[w].sleeps(asleep)) way_[w].commit();
     }

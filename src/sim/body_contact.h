@@ -20,6 +20,8 @@
 //
 // Of two materials friction, static friction and stickiness are the means (S2.8), restitution is
 // shared by laws/impact.h.
+//
+// In motion pieces without a whole cell (sim/thin_piece.h) meet the others as bodies of their own.
 #pragma once
 
 #include <memory>
@@ -30,6 +32,7 @@
 #include "sim/contact_sums.h"
 #include "sim/contact_way.h"
 #include "sim/settings.h"
+#include "sim/thin_piece.h"
 
 namespace swage {
 
@@ -84,8 +87,9 @@ class BodyContact {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
+        if constexpr (Io::kReads) find_thin();
         io(listed_, near_, step_, allowance_);
-        for (ContactSide& side : side_) io(side);
+        for (std::unique_ptr<ContactSide>& side : side_) io(*side);
         for (ContactWay& way : way_) io(way);
     }
 
@@ -95,8 +99,24 @@ class BodyContact {
         std::size_t back;  // the way from `onto` to `from`
         bool sleeps(const std::vector<char>& asleep) const { return asleep[from] && asleep[onto]; }
     };
+    // One of the sides after those of the bodies.
+    struct Thin {
+        std::size_t body;
+        std::unique_ptr<ThinPiece> piece;
+    };
+    std::size_t body_of(std::size_t side) const {
+        return side < bodies_ ? side : thin_[side - bodies_].body;
+    }
+    void find_thin();
+    void replace_thin(std::vector<Thin> thin);
+    std::vector<char> of_sides(const std::vector<char>& of_bodies) const;
+    void follow();
 
-    std::vector<ContactSide> side_;
+    SimSettings settings_;
+    std::size_t bodies_ = 0;  // that may meet
+    std::vector<std::unique_ptr<ContactSide>> side_;
+    std::vector<Thin> thin_;
+    std::vector<double> let_go_;             // by side, held by ways that are no more [J]
     std::vector<std::vector<Vec3>> listed_;  // of each side, where its skin was
     std::vector<ContactWay> way_;
     std::vector<Pair> pair_;         // the sides of each way

@@ -139,6 +139,11 @@ void ContactSide::connections_changed() {
     find_cells();
 }
 
+void ContactSide::leave_out(const std::vector<ParticleId>& particles) {
+    touch_.leave_out(particles);
+    find_cells();
+}
+
 void ContactSide::find_cells() {
     rim_ = molded_->skin();
     if (touch_.size() > touch_.own()) {

@@ -24,6 +24,8 @@ class ContactSide {
 
     // A blade or a crack has changed which cells are whole. Points keep their numbers.
     void connections_changed();
+    // These particles meet nothing by themselves, others do.
+    void leave_out(const std::vector<ParticleId>& particles);
 
     Aggregate& matter() const { return *matter_; }
     const std::shared_ptr<const RestSurface>& molded() const { return molded_; }

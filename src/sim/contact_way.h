@@ -43,6 +43,8 @@ class ContactWay {
     // The bodies have come near: what is asked of each point is found, for steps of this length
     // [s]. None of the rest may be called before, but for surfaces_changed() and commit().
     void come_near(double step);
+    // What one side finds deep in the other as it begins has not been pressed in.
+    void come_late() { begins_ = false; }
     // They have gone from each other: nothing is kept.
     void part();
 

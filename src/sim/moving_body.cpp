@@ -160,7 +160,7 @@ double MovingBody::surface_changed(const Drive& now) {
 void MovingBody::renew_candidates(const Drive& before, const Drive& now, double way) {
     if (!touches_) return;
     const double far = 0.45 * matter_.lattice.spacing;
-    gone_ += way + contacts_.at_rest().travel(matter_, before, now);
+    gone_ += way + contacts_.travel(matter_, before, now);
     if (gone_ > far) find_candidates(now);
 }
 
@@ -183,7 +183,7 @@ double MovingBody::move(double kick, double step) {
 }
 
 std::optional<Vec3> MovingBody::flight_velocity() {
-    if (!flies_ || inside_out_ > 0) return std::nullopt;
+    if (!flies_ || inside_out_ > 0 || contacts_.has_thin()) return std::nullopt;
     for (const PartSum& tool : load_) {
         if (tool.contacts > 0) return std::nullopt;  // it may stick to what it does not press on
     }
@@ -302,7 +302,7 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
 }
 
 bool MovingBody::is_stirred(const Drive& since, const Drive& now) const {
-    const double travel = contacts_.at_rest().near_travel(since, now);
+    const double travel = contacts_.near_travel(since, now);
     return travel > kStirred * matter_.lattice.spacing || pushes_.is_stirred(since, now);
 }
 

@@ -73,7 +73,7 @@ class MovingBody {
     bool is_stirred(const Drive& since, const Drive& now) const;
     // The farthest that what holds it, or may come to touch it, moves [m].
     double drive_travel(const Drive& from, const Drive& to) const {
-        return contacts_.at_rest().travel(matter_, from, to);
+        return contacts_.travel(matter_, from, to);
     }
     // The most that loads and gravity come to change the acceleration of any particle by [m/s2].
     double push_change(const Drive& from, const Drive& to) const;
@@ -151,8 +151,10 @@ class MovingBody {
     template <typename Io>
     void visit(Io& io) {  // what steps change
         lattice_.visit(io, matter_);
-        io(damping_, contacts_, pushes_, present_step_, flowed_, drag_, force_, load_, turned_,
-           gone_, implicit_, branch_energy_, block_energy_, gravity_, inside_out_, loss_to_book_);
+        io(damping_);
+        contacts_.visit(io, matter_);
+        io(pushes_, present_step_, flowed_, drag_, force_, load_, turned_, gone_, implicit_,
+           branch_energy_, block_energy_, gravity_, inside_out_, loss_to_book_);
     }
 
   private:

@@ -28,15 +28,90 @@ ImpactLaw law_on_tools(const Material& material) {
 
 MovingContacts::MovingContacts(const Aggregate& matter, const Apparatus& apparatus,
                                const SimSettings& settings, int body)
-    : rest_(matter, apparatus, settings, body),
+    : apparatus_(&apparatus),
+      settings_(settings),
+      body_(body),
+      rest_(matter, apparatus, settings, body),
       law_(law_on_tools(matter.material)),
       holding_(matter.material.holding_friction()),
       ratio_(law_.friction > 0 ? holding_ / law_.friction : 1),
       stickiness_(matter.material.stickiness),
       tool_way_(apparatus.tool.size()),
-      load_(apparatus.tool.size() + apparatus.grip.size()) {}
+      load_(apparatus.tool.size() + apparatus.grip.size()) {
+    find_thin(matter);
+}
+
+// Those that are as they were go on.
+double MovingContacts::find_thin(const Aggregate& matter) {
+    if (apparatus_->tool.empty() || !follows_all_motion(settings_.solver)) return 0;
+    std::vector<Thin> found;
+    std::vector<ParticleId> all;
+    std::shared_ptr<const RestSurface> molded;
+    std::shared_ptr<const Apparatus> tools;
+    for (const std::vector<ParticleId>& one : thin_pieces(matter)) {
+        const auto was = std::find_if(thin_.begin(), thin_.end(), [&](const Thin& thin) {
+            return thin.piece && thin.piece->particles() == one;
+        });
+        if (was != thin_.end()) {
+            found.push_back(std::move(*was));
+        } else {
+            if (!molded) molded = std::make_shared<const RestSurface>(matter);
+            std::shared_ptr<ThinPiece> piece = ThinPiece::find(matter, *molded, one);
+            if (!piece) continue;
+            if (!tools) {
+                Apparatus own;
+                own.name = apparatus_->name;
+                own.tool = apparatus_->tool;
+                tools = std::make_shared<const Apparatus>(std::move(own));
+            }
+            found.push_back({piece, tools, {piece->matter(), *tools, settings_, body_}});
+            MovingContacts& contacts = found.back().contacts;
+            contacts.rest_.pairs().begin_as_new();
+            if (last_step_ > 0) contacts.limit_stiffness(piece->matter(), last_step_);
+        }
+        all.insert(all.end(), one.begin(), one.end());
+    }
+    double let_go = 0;
+    for (const Thin& thin : thin_) let_go += thin.piece ? thin.contacts.stored_energy() : 0;
+    if (!all.empty() || !thin_.empty()) rest_.pairs().leave_out(std::move(all));
+    thin_ = std::move(found);
+    return let_go;
+}
+
+void MovingContacts::add_thin(const Drive& now, double step, const Vec3& gravity,
+                              Vec3Array& force) {
+    for (Thin& thin : thin_) {
+        ThinPiece& piece = *thin.piece;
+        piece.follow();
+        Vec3Array& own = piece.begin_forces(force);
+        thin.contacts.add_forces(piece.matter(), now, step, gravity, own);
+        ContactSums unused;
+        piece.end_forces(gravity, step, force, unused);
+        stored_ += thin.contacts.stored_;
+        for (std::size_t t = 0; t < thin.contacts.load_.size(); ++t) {
+            load_[t].join(thin.contacts.load_[t]);
+        }
+    }
+}
+
+double MovingContacts::travel(const Aggregate& matter, const Drive& from, const Drive& to) const {
+    double farthest = rest_.travel(matter, from, to);
+    for (const Thin& thin : thin_) {
+        farthest = std::max(farthest, thin.contacts.travel(thin.piece->matter(), from, to));
+    }
+    return farthest;
+}
+
+double MovingContacts::near_travel(const Drive& from, const Drive& to) const {
+    double farthest = rest_.near_travel(from, to);
+    for (const Thin& thin : thin_) {
+        farthest = std::max(farthest, thin.contacts.near_travel(from, to));
+    }
+    return farthest;
+}
 
 void MovingContacts::limit_stiffness(const Aggregate& matter, double step) {
+    for (Thin& thin : thin_) thin.contacts.limit_stiffness(thin.piece->matter(), step);
     last_step_ = step;
     rest_.grips().limit_stiffness(matter, step);
     rest_.pairs().limit_stiffness(matter, step);
@@ -44,7 +119,7 @@ void MovingContacts::limit_stiffness(const Aggregate& matter, double step) {
 
 double MovingContacts::connections_changed(const Aggregate& matter, const Drive& now) {
     const ToolPairs& pairs = rest_.pairs();
-    double held = rest_.grips().stored_energy(matter, now);
+    double held = find_thin(matter) + rest_.grips().stored_energy(matter, now);
     std::vector<Vec3> place;
     std::vector<double> stiffness;
     for (const ToolPairs::Pair& pair : pairs) {
@@ -97,6 +172,10 @@ void MovingContacts::carry(std::size_t n, const Vec3& from, const Vec3& to) {
 }
 
 void MovingContacts::find_candidates(const Aggregate& matter, const Drive& now) {
+    for (Thin& thin : thin_) {
+        thin.piece->follow();
+        thin.contacts.find_candidates(thin.piece->matter(), now);
+    }
     ToolPairs& pairs = rest_.pairs();
     const std::vector<int> before = pairs.find_candidates(matter, now);
     std::vector<Memory> memory(before.size());
@@ -138,6 +217,7 @@ struct MovingContacts::Meeting {
 };
 
 void MovingContacts::begin_step(const Drive& from) {
+    for (Thin& thin : thin_) thin.contacts.begin_step(from);
     world_from_tool_at_start_ = from.world_from_tool;
     for (std::size_t n = 0; n < memory_.size(); ++n) {
         Memory& memory = memory_[n];
@@ -214,6 +294,7 @@ void MovingContacts::add_forces(const Aggregate& matter, const Drive& now, doubl
     load_.assign(load_.size(), {});
     stored_ = rest_.grips().add_all(matter, now, force, tool_way_.size(), load_);
     if (!rest_.pairs().empty()) meet(matter, now, step == 0, gravity, force);
+    add_thin(now, step, gravity, force);
 }
 
 void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
@@ -327,6 +408,11 @@ ToolLosses MovingContacts::commit(const Drive& now) {
     }
     memory_.resize(kept);
     pairs.forget_gone();
+    for (Thin& thin : thin_) {
+        const ToolLosses own = thin.contacts.commit(now);
+        lost.damped += own.damped;
+        lost.friction += own.friction;
+    }
     return lost;
 }
 

@@ -2,13 +2,15 @@
 // What tools and grips do to a body in motion, but for implicit steps: the law of laws/impact.h on
 // the pairs of sim/tool_pairs.h, the tool rigid and as heavy as can be. A step first finds the
 // springs of all points that touch, then each one's dashpot from the speed that it would end the
-// step with.
+// step with. Pieces without a whole cell (sim/thin_piece.h) touch as bodies of their own.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "laws/impact.h"
 #include "sim/resting_contacts.h"
+#include "sim/thin_piece.h"
 
 namespace swage {
 
@@ -41,6 +43,11 @@ class MovingContacts {
     }
     double commit_implicit_step(const Aggregate& matter, const Drive& now);
 
+    // As of RestingContacts.
+    double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
+    double near_travel(const Drive& from, const Drive& to) const;
+    bool has_thin() const { return !thin_.empty(); }
+
     // A step begins from this drive, with the forces that were found last.
     void begin_step(const Drive& from);
     // Adds all contact and grip forces at the present positions, toward which a step of this length
@@ -56,12 +63,25 @@ class MovingContacts {
     ToolLosses commit(const Drive& now);
 
     template <typename Io>
-    void visit(Io& io) {  // what steps change
-        io(rest_, memory_, last_step_, way_step_, tool_way_, world_from_tool_at_start_, load_,
-           stored_);
+    void visit(Io& io, const Aggregate& matter) {  // what steps change
+        if constexpr (Io::kReads) find_thin(matter);
+        visit_own(io);
+        visit_thin(io);
     }
 
   private:
+    struct Thin;
+
+    template <typename Io>
+    void visit_own(Io& io) {
+        io(rest_, memory_, last_step_, way_step_, tool_way_, world_from_tool_at_start_, load_,
+           stored_);
+    }
+    template <typename Io>
+    void visit_thin(Io& io);
+    double find_thin(const Aggregate& matter);  // what is let go of by it [J]
+    void add_thin(const Drive& now, double step, const Vec3& gravity, Vec3Array& force);
+
     // What a point did, at the end of a step.
     struct Touch {
         Vec3 local = Vec3::Zero();    // in the tool's frame
@@ -92,6 +112,10 @@ class MovingContacts {
     void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
               Vec3Array& force);
 
+    const Apparatus* apparatus_;
+    SimSettings settings_;
+    int body_;
+    std::vector<Thin> thin_;
     RestingContacts rest_;
     std::vector<Memory> memory_;  // by pair
     ImpactLaw law_;               // of the matter on rigid tools; what is each point's is not in it
@@ -108,5 +132,16 @@ class MovingContacts {
     std::vector<PartSum> load_;
     double stored_ = 0;
 };
+
+struct MovingContacts::Thin {
+    std::shared_ptr<ThinPiece> piece;            // saved states may have it too
+    std::shared_ptr<const Apparatus> apparatus;  // the tools
+    MovingContacts contacts;
+};
+
+template <typename Io>
+void MovingContacts::visit_thin(Io& io) {
+    for (Thin& thin : thin_) thin.contacts.visit_own(io);
+}
 
 }  // namespace swage

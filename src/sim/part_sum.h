@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+
 #include "base/math.h"
 
 namespace swage {
@@ -19,6 +21,13 @@ struct PartSum {
         torque += arm.cross(point_force);
         size += point_force.norm();
         ++contacts;
+    }
+    void join(const PartSum& other) {
+        force += other.force;
+        torque += other.torque;
+        size += other.size;
+        penetration = std::max(penetration, other.penetration);
+        contacts += other.contacts;
     }
 };
 

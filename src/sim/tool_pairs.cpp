@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "sim/surface_forces.h"
@@ -59,11 +60,24 @@ void ToolPairs::find_limits(const Aggregate& matter) {
         stiffest_of_points(matter, points(), stiffness, kTouchShare / (limit_step_ * limit_step_));
 }
 
+// Saved states may have it too.
+void ToolPairs::own_touch() {
+    if (touch_.use_count() > 1) touch_ = std::make_shared<TouchPoints>(*touch_);
+}
+
+void ToolPairs::leave_out(std::vector<ParticleId> particles) {
+    left_out_ = std::move(particles);
+    if (touch_ == nullptr) return;
+    own_touch();
+    touch_->leave_out(left_out_);
+}
+
 void ToolPairs::connections_changed(const Aggregate& matter) {
     if (touch_ == nullptr) return;
-    if (touch_.use_count() > 1) touch_ = std::make_shared<TouchPoints>(*touch_);  // saved states'
+    own_touch();
     const std::size_t before = touch_->size();
     const auto moved = touch_->connections_changed(matter);
+    touch_->leave_out(left_out_);
     for (Pair& pair : pair_) pair.gone = pair.gone || !touch_->meets(pair.point);
     if (touch_->size() == before && moved.empty()) return;
     layer_ = {matter, points(), settings_.solver};
@@ -142,7 +156,7 @@ std::vector<int> ToolPairs::find_candidates(const Aggregate& matter, const Drive
                 before.push_back(-1);
                 Pair& pair = found.emplace_back(Pair{tool_id, p});
                 const bool is_new_surface = static_cast<std::size_t>(p) >= touch_->own();
-                if (is_new_surface) pair.deep = std::max(0.0, -distance);
+                if (is_new_ || is_new_surface) pair.deep = std::max(0.0, -distance);
                 clearances.push_back(clearance);
             }
         }

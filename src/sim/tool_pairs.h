@@ -46,6 +46,12 @@ class ToolPairs {
     // anew.
     void connections_changed(const Aggregate& matter);
 
+    // From here on these particles touch nothing by themselves, others do; candidates likewise.
+    void leave_out(std::vector<ParticleId> particles);
+
+    // All of the surface is new, and of a tool it finds itself inside as connections_changed() says.
+    void begin_as_new() { is_new_ = true; }
+
     // A move of the drive begins; points touched anew stick where they are now.
     void begin_move(const Aggregate& matter, const Drive& from);
 
@@ -110,6 +116,7 @@ class ToolPairs {
 
   private:
     void find_limits(const Aggregate& matter);
+    void own_touch();
     double point_stiffness(std::size_t point, double tool_says) const;
     Vec3 start_of(const Pair& pair) const;  // of the move, in the tool's frame
     EntryReach reach_of(const Pair& pair) const;
@@ -118,7 +125,9 @@ class ToolPairs {
     int body_;
     SimSettings settings_;
     double spacing_;
-    std::shared_ptr<TouchPoints> touch_;   // null where there is no tool; copied on change
+    std::shared_ptr<TouchPoints> touch_;  // null where there is no tool; copied on change
+    std::vector<ParticleId> left_out_;
+    bool is_new_ = false;
     SurfaceLayer layer_;                   // under those points
     std::vector<double> stiffness_limit_;  // of each [N/m]; empty: none
     double limit_step_ = 0;                // [s]
