@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "geometry/edges.h"
@@ -20,21 +21,24 @@ constexpr double kMostLeftOut = 0.25;  // of all area, in open sheets
 
 using Outline = std::vector<EdgeUse>;
 
-// Border edges of each shell, as outlines that run around the holes.
-std::vector<Outline> outlines(const TriMesh& mesh) {
+// Border edges of each shell, as outlines that run around the holes. Where shells meet at a corner
+// of both their borders, each outline keeps to its own.
+std::vector<Outline> outlines(const TriMesh& mesh, const std::vector<int>& shell_of) {
     // A hole's outline runs against the triangles beside it.
     const auto start = [](const EdgeUse& e) { return e.forward ? e.high : e.low; };
     const auto goal = [](const EdgeUse& e) { return e.forward ? e.low : e.high; };
-    std::multimap<int, EdgeUse> leaving;
+    std::multimap<std::pair<int, int>, EdgeUse> leaving;  // by shell and start
     for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        if (uses.size() == 1) leaving.emplace(start(uses[0]), uses[0]);
+        if (uses.size() != 1) return;
+        leaving.emplace(std::pair(shell_of[uses[0].triangle], start(uses[0])), uses[0]);
     });
     std::vector<Outline> loops;
     while (!leaving.empty()) {
         Outline path;
         std::map<int, std::size_t> visited;  // position: its place in the path
-        for (int at = leaving.begin()->first;;) {
-            const auto next = leaving.find(at);
+        const int shell = leaving.begin()->first.first;
+        for (int at = leaving.begin()->first.second;;) {
+            const auto next = leaving.find(std::pair(shell, at));
             if (next == leaving.end()) break;  // no loop: the border does not close
             visited[at] = path.size();
             path.push_back(next->second);
@@ -113,7 +117,7 @@ std::vector<ShellArea> measured_shells(const TriMesh& mesh, const std::vector<in
 HolesClosed close_holes(TriMesh& mesh) {
     const std::vector<int> shell_of = shells_of(mesh);
     std::vector<Filling> fillings;
-    for (const Outline& hole : outlines(mesh)) {
+    for (const Outline& hole : outlines(mesh, shell_of)) {
         fillings.push_back(filling_of(mesh, shell_of, hole));
     }
     const std::vector<ShellArea> shells = measured_shells(mesh, shell_of, fillings);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <random>
 
 #include "base/error.h"
@@ -81,6 +82,30 @@ TEST_CASE("a hole is filled, and all that stood keeps its attributes") {
     CHECK(repair.mesh.triangle_smooth.size() == repair.mesh.triangle.size());
     for (const Vec3& n : smooth_normals(repair.mesh, repair.mesh.position))
         CHECK(n.norm() == Approx(1));
+}
+
+TEST_CASE("a hole is filled around a triangle that stands on corners of its rim") {
+    TriMesh ball = ball_mesh(10, 0.3);
+    smooth_by_crease_angle(ball, 0.7);
+    const double volume = signed_volume(ball);
+    // It keeps no edge in common with the rest, and at most one of its corners to itself.
+    const Corners alone = ball.triangle[100];
+    const int freed = GENERATE_COPY(-1, alone[0], alone[1], alone[2]);
+    std::vector<char> keep(ball.triangle.size(), 1);
+    for (std::size_t t = 0; t < keep.size(); ++t) {
+        const Corners& c = ball.triangle[t];
+        const auto common = std::ranges::count_if(
+            c, [&](int v) { return std::ranges::find(alone, v) != alone.end(); });
+        const bool is_freed = std::ranges::find(c, freed) != c.end();
+        keep[t] = t == 100 || (common < 2 && !is_freed);
+    }
+    keep_triangles(ball, keep);
+    const Repair repair = repair_mesh(ball);
+    CHECK(told(repair, "left out 1 open sheet of 1 triangle"));
+    CHECK_FALSE(told(repair, "wrapped"));
+    CHECK(repair.mesh.triangle_uv.size() == repair.mesh.triangle.size());
+    CHECK(check_mesh(repair.mesh).bounds_a_volume());
+    CHECK(signed_volume(repair.mesh) == Approx(volume).epsilon(0.02));
 }
 
 TEST_CASE("an open box is closed to its true volume; two holes are two fillings") {
