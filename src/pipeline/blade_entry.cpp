@@ -22,4 +22,17 @@ bool enters_matter(const std::vector<std::array<Vec3, 3>>& swept, const Aggregat
     return false;
 }
 
+bool passes_beside(const std::vector<std::array<Vec3, 3>>& swept, const Aggregate& matter) {
+    const TriMesh mesh = swept_mesh(swept);
+    if (mesh.triangle.empty()) return false;
+    const double reach = matter.lattice.spacing;
+    const Box near = box_of(mesh.position).widened(reach);
+    const TriangleTree tree(mesh);
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        const Vec3 at = matter.particle_position.at(p);
+        if (near.contains(at) && tree.distance(at) <= reach) return false;
+    }
+    return true;
+}
+
 }  // namespace swage

@@ -13,4 +13,7 @@ namespace swage {
 // count, as the blade may pass beside what they hold.
 bool enters_matter(const std::vector<std::array<Vec3, 3>>& swept, const Aggregate& matter);
 
+// Whether a blade that moves comes no nearer than a cell to any particle.
+bool passes_beside(const std::vector<std::array<Vec3, 3>>& swept, const Aggregate& matter);
+
 }  // namespace swage

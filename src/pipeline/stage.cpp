@@ -255,12 +255,13 @@ class StageRun {
                 throw_if_interrupted();
                 if (legs > 0) follow_on_the_way();
                 cuts_.plan(simulation, legs > 0 ? frame : last_, number);
-                const PassedWatch uncut(bodies_, machine_.apparatus, stage_.sim);
+                const PassedWatch uncut(bodies_, machine_.apparatus, stage_.sim, cuts_.through());
                 FrameReport report = [&] {
                     const auto lap = context_.watch.lap("simulate");
                     return simulation.advance(way_.now(), way_.next(), way_.between());
                 }();
                 totals_.passed += uncut.count_passed(way_.now(), way_.next(), simulation);
+                totals_.passed_again += uncut.count_again(way_.now(), way_.next(), simulation);
                 if (report.severed > 0) hold_skins();
                 if (report.stop) {
                     stop(*report.stop, simulation, number);

@@ -26,7 +26,8 @@ StageCuts::StageCuts(const StageSpec& stage, const Machine& machine, const Stage
       bodies_(bodies),
       totals_(totals),
       warnings_(warnings),
-      settled_(bodies.size(), Blades(machine.apparatus.blade.size(), 0)) {}
+      settled_(bodies.size(), Blades(machine.apparatus.blade.size(), 0)),
+      through_(settled_) {}
 
 bool StageCuts::is_cut(std::size_t body) const { return is_any(marked(body, kCut)); }
 
@@ -38,6 +39,7 @@ StageCuts::Blades StageCuts::marked(std::size_t body, char as) const {
 
 void StageCuts::plan(Simulation& simulation, const FrameReport& last, int number) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        look_for_blades_out(b, way_.leg_ahead());
         const Blades open = marked(b, 0);
         if (!is_any(open)) continue;
         const std::vector<Drive> leg = way_of(open, way_met(b, way_.leg_ahead(), last));
@@ -97,6 +99,17 @@ void StageCuts::settle(Simulation& simulation, std::size_t body, const Blades& b
         if (blades[n]) settled_[body][n] = is_cut ? kCut : kGrazed;
     }
     if (!is_cut) totals_.entered = bodies_[body].matter.lattice.spacing;
+}
+
+// Those that move beside what they have cut, and no more in it.
+void StageCuts::look_for_blades_out(std::size_t body, std::span<const Drive> leg) {
+    for (std::size_t n = 0; n < through_[body].size(); ++n) {
+        if (settled_[body][n] != kCut || through_[body][n]) continue;
+        Blades alone(through_[body].size(), 0);
+        alone[n] = 1;
+        const auto swept = swept_triangles(machine_.apparatus, way_of(alone, leg));
+        through_[body][n] = passes_beside(swept, bodies_[body].matter);
+    }
 }
 
 // Where nothing is severed: whether there is matter that blades go into on this leg.

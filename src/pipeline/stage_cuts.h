@@ -24,6 +24,8 @@ class StageCuts {
 
     bool any_blade() const { return !machine_.apparatus.blade.empty(); }
     bool is_cut(std::size_t body) const;
+    // Of each body: the blades that have cut it and come out again.
+    const std::vector<std::vector<char>>& through() const { return through_; }
 
     // As a leg begins: once a blade is about to reach a body its whole cut is settled, as the body
     // lies then; in its matter and, along the same path, in its skin. `last`: how the leg before
@@ -34,7 +36,7 @@ class StageCuts {
 
     template <typename Io>
     void visit(Io& io) {
-        io(settled_);
+        io(settled_, through_);
     }
 
   private:
@@ -49,6 +51,7 @@ class StageCuts {
                                const FrameReport& last) const;
     void settle(Simulation& simulation, std::size_t body, const Blades& blades,
                 const FrameReport& last, int number);
+    void look_for_blades_out(std::size_t body, std::span<const Drive> leg);
     void look_for_blades(std::size_t body, std::span<const Drive> leg);
 
     const StageSpec& stage_;
@@ -57,7 +60,7 @@ class StageCuts {
     std::vector<WorkPiece>& bodies_;
     StageTotals& totals_;
     WarningBook& warnings_;
-    std::vector<Blades> settled_;  // of each body
+    std::vector<Blades> settled_, through_;  // of each body
 };
 
 }  // namespace swage

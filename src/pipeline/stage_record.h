@@ -28,9 +28,10 @@ struct StageTotals : StepCounts {
     bool touched = false;    // by a tool: quasi-static at the end of a leg, in motion of any step
     double entered = 0;      // spacing of what blades went into and severed nothing of; 0: nothing
     std::size_t passed = 0;  // connections that their motion took past a blade, uncut
-    double remainder = 0;    // of the books, by now [J]
-    double snapped = 0;      // the most by which one frame made it more [J]
-    int snapped_in = 0;      // that frame
+    std::size_t passed_again = 0;  // likewise, at rest too, past one that had been through
+    double remainder = 0;          // of the books, by now [J]
+    double snapped = 0;            // the most by which one frame made it more [J]
+    int snapped_in = 0;            // that frame
 
     void add(int number, const FrameReport& report, std::size_t tools) {
         count(report);

@@ -216,6 +216,18 @@ std::string why_nothing_is_cut(const StageEnd& end) {
         length_text(end.totals.entered));
 }
 
+// What a blade has found on its way that had been through and out again, and what had moved since.
+// It cuts none of that; less than a tenth of all cuts is what it leaves of the first time, crumbs.
+std::string uncut_again(const StageEnd& end) {
+    const std::size_t again = end.totals.passed_again;
+    if (10 * again <= static_cast<std::size_t>(end.totals.severed)) return {};
+    return fmt::format(
+        "{} passed uncut a blade that had come out and goes through again: in one stage a blade "
+        "cuts along the path on which it first meets a body; give each of its strokes a stage of "
+        "its own",
+        counted(again, "connection", "connections"));
+}
+
 // "a", "a and b", "a, b and c"; of more, the first.
 std::string names_text(std::vector<std::string> names) {
     constexpr std::size_t kTold = 3;
@@ -295,6 +307,7 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
                        : "owing to its place, width or path it passed through only a part of the "
                          "work-piece"));
     }
+    if (const std::string again = uncut_again(end); !again.empty()) warn(again);
     if (whole) {
         for (const std::string& one : idle_parts(end)) warn(one);
     }

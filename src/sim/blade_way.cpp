@@ -73,10 +73,12 @@ bool is_gripped(const Apparatus& apparatus, std::size_t body) {
 }
 
 std::size_t count_passed(const Aggregate& matter, const Vec3Array& before,
-                         const Apparatus& apparatus, const Drive& from, const Drive& to) {
+                         const Apparatus& apparatus, const Drive& from, const Drive& to,
+                         const std::vector<char>& blades) {
     std::vector<Box> near;  // what each blade sweeps
     for (std::size_t b = 0; b < apparatus.blade.size(); ++b) {
         near.emplace_back();
+        if (!blades.empty() && !blades[b]) continue;
         for (const auto& triangle : swept_triangles(apparatus.blade[b], from.world_from_blade[b],
                                                     to.world_from_blade[b])) {
             for (const Vec3& corner : triangle) near.back().grow(corner);

@@ -24,8 +24,9 @@ std::vector<Drive> way_of(const std::vector<char>& blades, std::span<const Drive
 bool is_gripped(const Apparatus& apparatus, std::size_t body);
 
 // How many unsevered connections have gone past an edge, or it past them, on this way since their
-// particles were at `before`.
+// particles were at `before`. Of the marked blades, or of all.
 std::size_t count_passed(const Aggregate& matter, const Vec3Array& before,
-                         const Apparatus& apparatus, const Drive& from, const Drive& to);
+                         const Apparatus& apparatus, const Drive& from, const Drive& to,
+                         const std::vector<char>& blades = {});
 
 }  // namespace swage
