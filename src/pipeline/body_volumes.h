@@ -16,6 +16,7 @@ struct BodyVolume {
     double flowed;                   // flowed_volume()
     std::optional<double> skin;      // what it encloses, where it is closed [m3]
     std::optional<double> off = {};  // boundary_off()
+    double piece = 0;                // piece_off(); 0 of a whole body
 };
 std::vector<BodyVolume> body_volumes(const std::vector<WorkPiece>& bodies);
 
@@ -30,9 +31,14 @@ Json volumes_json(const std::vector<WorkPiece>& bodies, const std::vector<BodyVo
 // volume its skin has grown more than its matter (below 0: less), where that is known.
 std::optional<double> swollen_by(const WorkPiece& body);
 
-// Cuts and breaks make no volume. By what share of its volume a skin that spans pieces of matter,
-// and is not made anew, has grown more than that since `before` (below 0: less), where that is
-// known.
-std::optional<double> stretched_by(const WorkPiece& body, const BodyVolume& before);
+// Cuts and breaks make no volume. Of a body that they have parted the piece that is most off, but
+// for crumbs: by what share of its volume the skin has grown more than its matter since both were
+// made (below 0: less). Nothing of a whole body, and where that is not known.
+struct PieceOff {
+    double by = 0;
+    bool spans = false;          // several pieces share a part of the skin, and count as one
+    bool is_of_several = false;  // there are others
+};
+std::optional<PieceOff> piece_off(const WorkPiece& body);
 
 }  // namespace swage

@@ -53,8 +53,13 @@ double way_of(const StageEnd& end) {
 // these point one way; those within a body balance, so that tools and grips bear their sum
 // u |x| E (V/a^2 + g A/a), and on a way s do s times that of work that goes nowhere.
 //
+// Parted: a point in a grip whose cell is parted is held by another cell at a place in it that is
+// kept in floats (matter/surface_points.h), 2^-24 of a cell off, which its spring, of g E A/a,
+// stores.
+//
 // An equilibrium leaves a share of a push, which is this at least; tools and grips bear it on.
 double unresolved(const StageEnd& end) {
+    constexpr double kPlace = 0.5 * std::numeric_limits<float>::epsilon();
     const WorkFrame& frame = end.machine.frame;
     const double way = way_of(end);
     const double off = std::numeric_limits<double>::epsilon() *
@@ -74,6 +79,9 @@ double unresolved(const StageEnd& end) {
         const double a = matter.lattice.spacing, volume = matter.volume();
         const double held = volume / (a * a) + end.stage.sim.grip_stiffness * gripped / a;
         sum += modulus * (1e-16 * volume + off * held * way);
+        if (end.totals.severed + end.totals.broken > 0) {
+            sum += 0.5 * modulus * end.stage.sim.grip_stiffness * gripped * a * kPlace * kPlace;
+        }
         if (!in_motion(end.stage.sim.solver)) {
             sum += end.totals.residual * least_push(matter) * way;
         }

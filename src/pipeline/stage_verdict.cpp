@@ -21,6 +21,7 @@ namespace swage {
 namespace {
 
 constexpr double kSwollen = 0.01;  // of its volume that a skin may be off by untold
+constexpr double kSame = 1e-3;     // and what that may change by in a stage untold
 constexpr double kShrunk = 0.01;   // likewise, that flow may change it by
 constexpr double kOverlap = 0.5;   // spacings that a body may lie in itself or another untold
 
@@ -124,6 +125,25 @@ std::string lies_in_another(const StageEnd& end) {
         end.bodies[into].name, end.bodies[worst].name, length_text(depth[worst]));
 }
 
+// Why a skin is off its matter's volume.
+std::string how_it_folds(const WorkPiece& body) {
+    const double usual = *SkinSettings().longest_edge;
+    double longest = 0;  // spacings
+    for (const Corners& t : body.skin.triangle) {
+        for (int n = 0; n < 3; ++n) {
+            const Vec3 edge = body.skin.position[t[n]] - body.skin.position[t[(n + 1) % 3]];
+            longest = std::max(longest, edge.norm() / body.matter.lattice.spacing);
+        }
+    }
+    if (longest <= 1.01 * usual) {
+        return "it has folded within single cells, and smaller ones make it less";
+    }
+    return fmt::format(
+        "its triangles are as long as {:.2g} cells, between which it stays flat: [skin] divide = "
+        "{} makes it less",
+        longest, usual);
+}
+
 // Flow that keeps the volume, and a skin that does not. Empty: as large as it should be.
 std::string swollen(const StageEnd& end, const WorkPiece& body) {
     const double by = swollen_by(body).value_or(0);
@@ -132,8 +152,7 @@ std::string swollen(const StageEnd& end, const WorkPiece& body) {
     return fmt::format(
         "the skin of {} encloses {:.2g} % {} than its matter, which flows at one volume: {}",
         name_among(end.bodies, body), 100 * std::abs(by), by > 0 ? "more" : "less",
-        frame4 ? "skin.kind = \"mount\" keeps it"
-               : "it has folded within single cells, and smaller ones make it less");
+        frame4 ? "skin.kind = \"mount\" keeps it" : how_it_folds(body));
 }
 
 // Matter that has less or more of its volume by what flowed in the stage. Empty: hardly.
@@ -151,21 +170,24 @@ std::string shrunk(const StageEnd& end, std::size_t body) {
                 : "try more frames or smaller cells");
 }
 
-// Nothing has flowed, the matter is in pieces, and the skin takes up more or less than it did.
-std::string stretched(const StageEnd& end, std::size_t b) {
-    if (end.last.plastic > 0) return {};
-    const double by = stretched_by(end.bodies[b], end.volumes_before[b]).value_or(0);
-    if (std::abs(by) <= kSwollen) return {};
+// A piece whose skin takes up more or less than its matter, by what the stage has done; what was so
+// has been told.
+std::string piece_swollen(const StageEnd& end, std::size_t b) {
+    const std::optional<PieceOff> off = piece_off(end.bodies[b]);
+    if (!off || std::abs(off->by) <= kSwollen) return {};
+    if (std::abs(off->by - end.volumes_before[b].piece) < kSame) return {};
     return fmt::format(
-        "the skin of {} encloses {:.2g} % {} than {}: parts of it are stretched from one piece to "
-        "another; smaller cells or skin.kind = \"boundary\" avoid that",
-        name_among(end.bodies, end.bodies[b]), 100 * std::abs(by), by > 0 ? "more" : "less",
-        end.totals.severed > 0 ? "before the cut" : "as the stage began");
+        "the skin of {}{} encloses {:.2g} % {} than its matter: {}",
+        off->is_of_several ? "a piece of " : "", name_among(end.bodies, end.bodies[b]),
+        100 * std::abs(off->by), off->by > 0 ? "more" : "less",
+        off->spans ? "parts of it are stretched from one piece to another; smaller cells or "
+                     "skin.kind = \"boundary\" avoid that"
+                   : "cells that a cut or a break runs through are springs, which keep no volume; "
+                     "smaller ones make it less");
 }
 
 // A boundary that the stage has left off its matter's volume; what was so has been told.
 std::string boundary_left_off(const StageEnd& end, std::size_t b) {
-    constexpr double kSame = 1e-3;
     const double before = end.volumes_before[b].off.value_or(0);
     const double off = boundary_off(end.bodies[b]).value_or(0);
     if (std::abs(off - before) < kSame) return {};
@@ -319,7 +341,7 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     for (std::size_t b = 0; b < end.bodies.size(); ++b) {
         if (ended == StageEnded::interrupted) break;
         for (const std::string& told :
-             {swollen(end, end.bodies[b]), stretched(end, b), boundary_left_off(end, b),
+             {swollen(end, end.bodies[b]), piece_swollen(end, b), boundary_left_off(end, b),
               shrunk(end, b), inside_out(end, end.bodies[b])}) {
             if (!told.empty()) warn(told);
         }
