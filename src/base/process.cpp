@@ -2,6 +2,7 @@
 #include "base/process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
@@ -16,6 +17,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -123,7 +125,8 @@ void become_child(pid_t parent) {
     ::setrlimit(RLIMIT_CORE, &none);
 }
 
-PipedProgram::PipedProgram(const std::vector<std::string>& argument) {
+PipedProgram::PipedProgram(const std::vector<std::string>& argument, double patience)
+    : patience_(patience) {
     if (argument.empty()) fail(ExitCode::output, "there is no program to start");
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) {
@@ -131,6 +134,7 @@ PipedProgram::PipedProgram(const std::vector<std::string>& argument) {
     }
     const FileHandle to_program(ends[0]);
     input_ = FileHandle(ends[1]);
+    ::fcntl(input_.id(), F_SETFL, O_NONBLOCK);  // of our end alone
     errors_ = FileHandle(::memfd_create("errors", MFD_CLOEXEC));
 
     posix_spawn_file_actions_t action;
@@ -185,6 +189,11 @@ bool PipedProgram::write(const void* bytes, std::size_t size) {
     while (size > 0) {
         const ssize_t written = ::write(input_.id(), from, size);
         if (written < 0 && errno == EINTR) continue;
+        if (written < 0 && errno == EAGAIN) {
+            if (takes_more()) continue;
+            has_taken_nothing_ = true;
+            ::kill(-process_, SIGKILL);
+        }
         if (written < 0) {
             input_.close();
             return false;
@@ -193,6 +202,20 @@ bool PipedProgram::write(const void* bytes, std::size_t size) {
         size -= static_cast<std::size_t>(written);
     }
     return true;
+}
+
+// Waits until it does; false where that takes too long.
+bool PipedProgram::takes_more() const {
+    using Clock = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + std::chrono::duration<double>(patience_);
+    for (;;) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+        if (left.count() <= 0) return false;
+        pollfd wait = {input_.id(), POLLOUT, 0};
+        const int ready =
+            ::poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), 1000)));
+        if (ready > 0 || (ready < 0 && errno != EINTR)) return true;  // or the write says why not
+    }
 }
 
 int PipedProgram::finish() {

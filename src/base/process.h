@@ -37,16 +37,22 @@ void kill_programs();
 // terminal reaches only us and we decide how it ends.
 class PipedProgram {
   public:
-    // argument[0] is looked up in PATH. Throws Error(output) when it cannot be started.
-    explicit PipedProgram(const std::vector<std::string>& argument);
+    static constexpr double kPatience = 120;  // [s]
+
+    // argument[0] is looked up in PATH. Throws Error(output) when it cannot be started. `patience`:
+    // how long it may take nothing of what is written [s].
+    explicit PipedProgram(const std::vector<std::string>& argument, double patience = kPatience);
     // Kills the program when finish() was not called.
     ~PipedProgram();
     PipedProgram(const PipedProgram&) = delete;
     PipedProgram& operator=(const PipedProgram&) = delete;
 
-    // False when the program has stopped listening; no signal is raised.
+    // False when the program has stopped listening, or was killed as it took nothing for too long;
+    // no signal is raised.
     bool write(const void* bytes, std::size_t size);
     bool write(std::string_view text) { return write(text.data(), text.size()); }
+
+    bool has_taken_nothing() const { return has_taken_nothing_; }
 
     // Ends the input, waits, and gives the exit status: 128 + n when ended by signal n, -1 when
     // that is not known.
@@ -60,8 +66,11 @@ class PipedProgram {
 
   private:
     int status_of_end();
+    bool takes_more() const;
 
     pid_t process_ = -1;
+    double patience_;
+    bool has_taken_nothing_ = false;
     FileHandle input_;   // our end of the pipe
     FileHandle errors_;  // a file in memory, so that a talkative program never blocks
 };

@@ -89,6 +89,10 @@ void Film::add(const Image& frame) {
     ++frame_count_;
     if (!encoder_->write(bytes.data(), bytes.size())) {
         const int status = encoder_->finish();
+        if (encoder_->has_taken_nothing()) {
+            give_up(fmt::format("ffmpeg took nothing of it for {} s", PipedProgram::kPatience));
+            return;
+        }
         give_up(fmt::format("ffmpeg ended early with status {}: {}", status,
                             encoder_->last_error_line()));
     }
@@ -106,7 +110,12 @@ bool Film::finish() {
             fmt::format("ffmpeg ended with status {}: {}", status, encoder_->last_error_line()));
         return false;
     }
-    publish(temporary_, file_);
+    try {
+        publish(temporary_, file_);
+    } catch (const Error& error) {
+        give_up(error.what());
+        return false;
+    }
     encoder_.reset();
     return true;
 }

@@ -47,6 +47,21 @@ TEST_CASE("writing to a program that ended returns false and raises no signal", 
     CHECK_FALSE(deaf.write("more"));
 }
 
+TEST_CASE("a program that reads nothing any more is given up, one that reads slowly is not") {
+    const std::string block(1 << 19, 'x');
+    PipedProgram deaf({"sh", "-c", "exec sleep 60"}, 0.3);
+    CHECK_FALSE(deaf.write(block));
+    CHECK(deaf.has_taken_nothing());
+    CHECK(deaf.finish() == 128 + SIGKILL);
+    PipedProgram slow({"sh", "-c",
+                       "for n in 1 2 3 4 5 6 7 8; do dd bs=65536 count=1 iflag=fullblock "
+                       "of=/dev/null; sleep 0.2; done; cat > /dev/null"},
+                      1);
+    CHECK(slow.write(block));
+    CHECK_FALSE(slow.has_taken_nothing());
+    CHECK(slow.finish() == 0);
+}
+
 TEST_CASE("a talkative program does not block, and its last line is kept", "[process]") {
     PipedProgram talker({"sh", "-c", "seq 1 200000 >&2; cat >/dev/null; echo the end >&2"});
     CHECK(talker.write("x"));

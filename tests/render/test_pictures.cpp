@@ -218,6 +218,20 @@ TEST_CASE("a film that cannot be made is a warning and leaves nothing behind", "
     }
     ::setenv("PATH", path.c_str(), 1);
     CHECK(fs::is_empty(folder.path()));
+    {  // one that says that all is well, and is not
+        const Scratch other;
+        other.write("ffmpeg", "#!/bin/sh\ncat > /dev/null\n");
+        fs::permissions(other / "ffmpeg", fs::perms::owner_all);
+        ::setenv("PATH", (other.path().string() + ":" + path).c_str(), 1);
+        Film film(folder / "f.mp4", 64, 48, FrameRate{});
+        film.add(pattern(64, 48));
+        bool is_made = true;
+        CHECK_NOTHROW(is_made = film.finish());
+        CHECK_FALSE(is_made);
+        CHECK(film.warning().find("no film") != std::string::npos);
+        ::setenv("PATH", path.c_str(), 1);
+    }
+    CHECK(fs::is_empty(folder.path()));
     Film film(folder / "e.mp4", 64, 48, FrameRate{});
     CHECK_THROWS_AS(film.add(pattern(48, 64)), Error);
 }
