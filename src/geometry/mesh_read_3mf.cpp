@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What assimp 5.2 passes over in a 3MF file is set right before it reads it: the unit of its
-// lengths, and parts of the model that stand in files of their own (production extension), which
-// are put into the one that it reads. The one file that sees pugixml. Sources: 3MF Core
-// Specification 1.3; Production Extension 1.1.
+// lengths, parts of the model that stand in files of their own (production extension), which are
+// put into the one that it reads, and colours in other lists than it knows (materials extension).
+// The one file that sees pugixml. Sources: 3MF Core Specification 1.3; Production Extension 1.1;
+// Materials and Properties Extension 1.2.
 #include <algorithm>
 #include <map>
 #include <pugixml.hpp>
+#include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
 #include "geometry/zip.h"
@@ -97,6 +100,120 @@ std::string without_root(std::string_view path) {
     return std::string(path);
 }
 
+// Sets an attribute that the element may have.
+void give(xml_node element, const char* name, const std::string& value) {
+    xml_attribute one = attribute_of(element, name);
+    if (!one) one = element.append_attribute(name);
+    one.set_value(value.c_str());
+}
+
+// assimp gives all of an object one material, of those lists that it knows, and it is that of the
+// object or of its last triangle that names one. What else a model says of its look is brought to
+// that, and told.
+class LookSettler {
+  public:
+    explicit LookSettler(xml_node model) : resources_(child_of(model, "resources")) {}
+
+    void settle() {
+        for (xml_node one = resources_.first_child(); one;) {
+            const xml_node next = one.next_sibling();
+            settle_list(one);
+            one = next;
+        }
+        for (const xml_node& object : resources_.children()) {
+            if (name_of(object) == "object") settle_object(object);
+        }
+    }
+
+    bool is_changed() const { return is_changed_; }
+    void tell(MeshSource& source) const {
+        for (const std::string& kind : lost_) {
+            source.tell_of_look((kind == "texture2dgroup"    ? "its images ("
+                                 : kind == "multiproperties" ? "materials of several parts ("
+                                                             : "mixtures of materials (") +
+                                kind + ") were left out");
+        }
+        if (others_ > 0) {
+            source.tell_of_look(
+                fmt::format("{} another colour than most of their object, which "
+                            "all of it was given",
+                            counted(others_, "triangle has", "triangles have")));
+        }
+    }
+
+  private:
+    using Property = std::pair<std::string, std::string>;  // a list, and a place in it
+
+    void settle_list(xml_node list) {
+        const std::string name(name_of(list));
+        const std::string id = attribute_of(list, "id").value();
+        if (name == "basematerials") {
+            known_.insert(id);
+        } else if (name == "colorgroup") {  // as base materials
+            known_.insert(id);
+            is_changed_ = true;
+            list.set_name("basematerials");
+            int number = 0;
+            for (xml_node color : list.children()) {
+                if (name_of(color) != "color") continue;
+                color.set_name("base");
+                give(color, "name", fmt::format("color-{}", ++number));
+                give(color, "displaycolor", attribute_of(color, "color").value());
+            }
+        } else if (name == "texture2dgroup" || name == "multiproperties" ||
+                   name == "compositematerials" || name == "texture2d") {
+            is_changed_ = true;
+            if (name != "texture2d") lost_.insert(name);
+            resources_.remove_child(list);
+        }
+    }
+
+    // Of a triangle, or of its object where it names none itself.
+    static Property property_of(const xml_node& element, const char* place, const Property& other) {
+        const xml_attribute list = attribute_of(element, "pid"), own = attribute_of(element, place);
+        if (!list && !own) return other;
+        return {list ? list.value() : other.first, own.as_string("0")};
+    }
+
+    void settle_object(xml_node object) {
+        const Property own = property_of(object, "pindex", {});
+        const xml_node triangles = child_of(child_of(object, "mesh"), "triangles");
+        std::map<Property, std::size_t> count;  // of triangles of one property
+        std::size_t all = 0;
+        const auto changes = [](const xml_node& triangle) {
+            const std::string_view first = attribute_of(triangle, "p1").value();
+            for (const char* corner : {"p2", "p3"}) {
+                if (attribute_of(triangle, corner).as_string(std::string(first).c_str()) != first)
+                    return true;
+            }
+            return false;
+        };
+        for (const xml_node& triangle : triangles.children()) {
+            const Property property = property_of(triangle, "p1", own);
+            if (known_.contains(property.first)) ++all, count[property] += !changes(triangle);
+        }
+        const auto most =
+            std::ranges::max_element(count, {}, [](const auto& one) { return one.second; });
+        const bool is_one = count.empty() || (count.size() == 1 && most->second == all);
+        if (!is_one) others_ += all - most->second;
+        const Property look = count.empty() ? Property() : most->first;
+        if (is_one && look == own) return;  // its triangles may say so too
+        is_changed_ = true;
+        for (const char* name : {"pid", "pindex"})
+            object.remove_attribute(attribute_of(object, name));
+        if (!count.empty()) give(object, "pid", look.first), give(object, "pindex", look.second);
+        for (xml_node triangle : triangles.children()) {
+            for (const char* name : {"pid", "p1", "p2", "p3"})
+                triangle.remove_attribute(attribute_of(triangle, name));
+        }
+    }
+
+    xml_node resources_;
+    std::set<std::string> known_, lost_;
+    std::size_t others_ = 0;
+    bool is_changed_ = false;
+};
+
 class ModelMerge {
   public:
     ModelMerge(MeshSource& source, std::string root)
@@ -116,8 +233,12 @@ class ModelMerge {
         });
         if (!named.empty()) merge(model, named);
         check_places(model);
+        LookSettler look(model);
+        look.settle();
+        look.tell(source_);
+        tell_of_types(model);
         std::string merged;
-        if (named.empty()) {
+        if (named.empty() && !look.is_changed()) {
             merged = contents(root_);
         } else {
             TextWriter writer;
@@ -140,6 +261,25 @@ class ModelMerge {
         }
         std::string text;
     };
+
+    // What is built, but is no model: of supports the core specification says that they are not to
+    // be part of what is made.
+    void tell_of_types(const xml_node& model) const {
+        std::set<std::string_view> built;
+        visit_elements(model, [&](const xml_node& element) {
+            if (name_of(element) == "item" || name_of(element) == "component")
+                built.insert(attribute_of(element, "objectid").value());
+        });
+        for (const xml_node& object : child_of(model, "resources").children()) {
+            const std::string_view id = attribute_of(object, "id").value(),
+                                   type = attribute_of(object, "type").as_string("model");
+            if (name_of(object) != "object" || type == "model" || !built.contains(id)) continue;
+            source_.finding.push_back(fmt::format(
+                "object {} is of type '{}' and becomes matter all the same: take it out of the "
+                "file where it is no part of the body",
+                id, type.substr(0, 40)));
+        }
+    }
 
     // An object may be a component of many, which assimp makes a node of its own for each.
     void check_places(const xml_node& model) const {

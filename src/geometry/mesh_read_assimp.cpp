@@ -14,12 +14,15 @@
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <new>
 
 #include "base/error.h"
 #include "base/portable_math.h"
 #include "base/srgb.h"
+#include "geometry/box.h"
+#include "geometry/mesh_check.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
 
@@ -108,9 +111,23 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
     }
 }
 
+constexpr double kSingle = 0.5 * std::numeric_limits<float>::epsilon();
+constexpr double kRounded = 1e-5;  // of a mesh, by what its places may be rounded untold
+
+bool is_rounded_from(const std::vector<Vec3>& given, const std::vector<Vec3>& read) {
+    if (given.empty() || given.size() != read.size()) return false;
+    for (std::size_t v = 0; v < read.size(); ++v) {
+        if ((given[v] - read[v]).norm() > 4 * kSingle * given[v].norm()) return false;
+    }
+    return true;
+}
+
 class SceneReader {
   public:
     SceneReader(MeshSource& source, const aiScene& scene) : source_(source), scene_(scene) {}
+
+    // What single precision does to a place farthest from its origin [units].
+    double rounds_by() const { return kSingle * farthest_; }
 
     RawMesh read() {
         if (scene_.mRootNode == nullptr) fail(ExitCode::mesh, "the file contains no scene");
@@ -269,8 +286,9 @@ class SceneReader {
         mesh_.normal.resize(base, Eigen::Vector3f::Zero());
         for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
             const aiVector3D& p = mesh.mVertices[v];
-            mesh_.position.push_back(linear * Vec3(p.x, p.y, p.z) +
-                                     world_from_mesh.topRightCorner<3, 1>());
+            const Vec3 own = linear * Vec3(p.x, p.y, p.z);
+            farthest_ = std::max(farthest_, own.cwiseAbs().maxCoeff());
+            mesh_.position.push_back(own + world_from_mesh.topRightCorner<3, 1>());
             if (has_normal) {
                 const aiVector3D& n = mesh.mNormals[v];
                 mesh_.normal.push_back(
@@ -393,6 +411,7 @@ class SceneReader {
     std::map<std::pair<const aiNode*, std::string>, int> part_id_;
     std::map<std::string, int> name_uses_;
     bool is_named_ = false;
+    double farthest_ = 0;
     aiString path_;
     std::size_t lines_and_points_ = 0;
     bool has_bones_ = false, has_shapes_ = false, more_uv_ = false, more_color_ = false;
@@ -401,7 +420,8 @@ class SceneReader {
 }  // namespace
 
 RawMesh read_by_assimp(MeshSource& source) {
-    if (source.format == MeshFormat::stl) patch_stl(source);
+    std::vector<Vec3> corner;
+    if (source.format == MeshFormat::stl) corner = patch_stl(source);
     if (source.format == MeshFormat::gltf || source.format == MeshFormat::glb) patch_gltf(source);
     const double unit = source.format == MeshFormat::tmf ? patch_3mf(source) : 1;
     const std::string extension = kMeshEnding[std::size_t(source.format)];
@@ -419,7 +439,18 @@ RawMesh read_by_assimp(MeshSource& source) {
         fail(ExitCode::mesh, "not a readable .{} file ({})", extension, why);
     }
     if (!dropped.empty()) fail(ExitCode::mesh, "the file is damaged ({})", dropped);
-    RawMesh mesh = SceneReader(source, *scene).read();
+    SceneReader reader(source, *scene);
+    RawMesh mesh = reader.read();
+    if (reader.rounds_by() > kRounded * box_of(mesh.position).size().norm()) {
+        if (is_rounded_from(corner, mesh.position)) {
+            mesh.position = std::move(corner);
+        } else {
+            source.finding.push_back(fmt::format(
+                "its places are rounded by up to {}, as they are read in single precision: move it "
+                "nearer to its origin in the program that wrote it",
+                length_text(unit * reader.rounds_by())));
+        }
+    }
     for (Vec3& p : mesh.position) p *= unit;
     return mesh;
 }

@@ -91,7 +91,7 @@ RawMesh read_by_assimp(MeshSource& source);
 RawMesh read_raw(MeshSource& source);  // whichever fits, with its textures looked up
 
 // Rewrite a file's bytes where assimp would take them wrongly.
-void patch_stl(MeshSource& source);
+std::vector<Vec3> patch_stl(MeshSource& source);  // of a text the places of its facets' corners
 void patch_gltf(MeshSource& source);
 double patch_3mf(MeshSource& source);  // the unit of its lengths [m]
 
@@ -111,6 +111,11 @@ void check_placed(const std::vector<PlacedPart>& parts, const std::vector<std::s
 // Cuts the polygons into triangles and files them in `mesh`; checks every index. Polygons of fewer
 // than three different corners are left out, with a finding.
 void add_polygons(const PolygonList& polygons, RawMesh& mesh);
+
+// To what the colours of a file are counted that does not say whether to 1 or to 255. `brightest`:
+// their largest number. To 255 they would all but be black up to 2, and what is light goes a little
+// above 1.
+inline double counted_to(double brightest) { return brightest > 2 ? 255 : 1; }
 
 // That `count` materials, of which one is called `name`, are drawn otherwise than they are meant;
 // `by`: how the file says it.

@@ -93,12 +93,7 @@ class ObjReader {
             if (count < 3) bad_line(line_, "a vertex needs three coordinates");
             mesh_.position.emplace_back(value[0], value[1], value[2]);
             if (count >= 6) {  // x y z r g b, the common extension
-                mesh_.color.resize(mesh_.position.size() - 1, Eigen::Vector3f::Ones());
-                Eigen::Vector3f color;
-                for (int k = 0; k < 3; ++k)
-                    color[k] =
-                        static_cast<float>(linear_from_srgb(std::clamp(value[3 + k], 0.0, 1.0)));
-                mesh_.color.push_back(color);
+                color_.emplace_back(mesh_.position.size() - 1, Vec3(value[3], value[4], value[5]));
             }
         } else if (key == "vt") {
             const int count = numbers(line, value);
@@ -180,8 +175,16 @@ class ObjReader {
                  "no faces ({} vertices, {} lines and points, {} free-form surfaces)",
                  mesh_.position.size(), lines_and_points_, free_forms_);
         }
-        if (!mesh_.color.empty())
-            mesh_.color.resize(mesh_.position.size(), Eigen::Vector3f::Ones());
+        if (!color_.empty()) mesh_.color.resize(mesh_.position.size(), Eigen::Vector3f::Ones());
+        double brightest = 0;
+        for (const auto& [vertex, color] : color_)
+            brightest = std::max(brightest, color.maxCoeff());
+        const double most = counted_to(brightest);
+        for (const auto& [vertex, color] : color_) {
+            for (int k = 0; k < 3; ++k)
+                mesh_.color[vertex][k] =
+                    static_cast<float>(linear_from_srgb(std::clamp(color[k] / most, 0.0, 1.0)));
+        }
         if (lines_and_points_ > 0)
             source_.finding.push_back(
                 fmt::format("{} lines and points were left out", lines_and_points_));
@@ -378,6 +381,7 @@ class ObjReader {
 
     MeshSource& source_;
     RawMesh mesh_;
+    std::vector<std::pair<std::size_t, Vec3>> color_;  // of a vertex, as the file has it
     PolygonList polygons_;
     int line_ = 0, material_ = -1, part_ = -1;
     bool has_objects_ = false;

@@ -3,6 +3,7 @@
 // assimp 5.2, which makes one triangle of a file of strips, never returns from a file without
 // "end_header", and hands on indices out of range.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -268,7 +269,27 @@ class PlyReader {
                 mesh_.color.push_back(color);
             }
         });
+        if (has_color) settle_fractions(element, {red, green, blue});
         has_vertex_uv_ = has_uv;
+    }
+
+    static bool is_fraction(Number type) {
+        return type == Number::float32 || type == Number::float64;
+    }
+
+    // Where all channels are: to 1 they are light, to 255 for display.
+    void settle_fractions(const Element& element, const std::array<int, 3>& channel) {
+        const auto is_one = [&](int c) { return is_fraction(element.property[c].type); };
+        if (std::ranges::none_of(channel, is_one)) return;
+        float brightest = 0;
+        for (const auto& color : mesh_.color) brightest = std::max(brightest, color.maxCoeff());
+        const double most = std::ranges::all_of(channel, is_one) ? counted_to(brightest) : 1;
+        for (auto& color : mesh_.color) {
+            for (float& c : color) {
+                c = std::clamp(c / static_cast<float>(most), 0.0f, 1.0f);
+                if (most > 1) c = static_cast<float>(linear_from_srgb(double(c)));
+            }
+        }
     }
 
     // Whole numbers are for display (sRGB), fractions are linear light. What is wider than a colour
@@ -278,7 +299,7 @@ class PlyReader {
         switch (element.property[channel].type) {
             case Number::float32:
             case Number::float64:
-                return static_cast<float>(std::clamp(c, 0.0, 1.0));
+                return static_cast<float>(c);  // settle_fractions()
             case Number::uint16:
                 return static_cast<float>(linear_from_srgb(std::clamp(c / 65535, 0.0, 1.0)));
             default:

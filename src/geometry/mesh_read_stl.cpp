@@ -22,7 +22,8 @@ class StlText {
   public:
     explicit StlText(std::string& bytes) : bytes_(bytes) {}
 
-    void settle() {
+    // The corners of its facets, in their order.
+    std::vector<Vec3> settle() {
         do {
             expect("solid");
             skip_name();
@@ -31,6 +32,7 @@ class StlText {
             if (word != "endsolid") refuse(word, "endsolid");
             skip_name();
         } while (skip_white());
+        return std::move(corner_);
     }
 
   private:
@@ -43,7 +45,7 @@ class StlText {
         int vertices = 0;
         std::string_view word = next();
         for (; word == "vertex"; word = next()) {
-            read_numbers();
+            corner_.push_back(read_numbers());
             ++vertices;
         }
         if (word != "endloop") refuse(word, "endloop");
@@ -51,14 +53,15 @@ class StlText {
         expect("endfacet");
     }
 
-    void read_numbers() {
-        for (int k = 0; k < 3; ++k) {
-            double value = 0;
+    Vec3 read_numbers() {
+        Vec3 numbers;
+        for (double& value : numbers) {
             const std::string_view word = next();
             if (word.empty()) refuse(word, "a number");
             if (!to_number(word, value))
                 fail(ExitCode::mesh, "facet {}: '{}' is not a number", facets_, word.substr(0, 40));
         }
+        return numbers;
     }
 
     void expect(const char* what) {
@@ -103,6 +106,7 @@ class StlText {
     std::string& bytes_;
     std::size_t at_ = 0;
     std::size_t facets_ = 0;
+    std::vector<Vec3> corner_;
 };
 
 // Of a binary STL file as it counts its facets; nothing where it is text, whose first bytes hold
@@ -132,7 +136,7 @@ void settle_binary_stl(MeshSource& source, std::uint64_t size) {
 
 }  // namespace
 
-void patch_stl(MeshSource& source) {
+std::vector<Vec3> patch_stl(MeshSource& source) {
     std::string& bytes = source.bytes;
     std::size_t begin = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0;
     while (begin < bytes.size() && is_white(bytes[begin])) ++begin;
@@ -140,11 +144,11 @@ void patch_stl(MeshSource& source) {
     if (const auto size = binary_stl_size(bytes, says_solid)) {
         settle_binary_stl(source, *size);
         if (says_solid) bytes.replace(begin, 5, "     ");
-    } else {
-        bytes.resize(bytes.find_last_not_of('\0') + 1);  // what pads it
-        bytes.erase(0, std::min(begin, bytes.size()));
-        StlText(bytes).settle();
+        return {};
     }
+    bytes.resize(bytes.find_last_not_of('\0') + 1);  // what pads it
+    bytes.erase(0, std::min(begin, bytes.size()));
+    return StlText(bytes).settle();
 }
 
 }  // namespace swage

@@ -5,6 +5,7 @@
 #include "tests/catch.h"
 #include "tests/geometry/mesh_fixtures.h"
 #include "tests/geometry/zip_fixture.h"
+#include "tests/shared/says.h"
 
 using namespace swage;
 using test::Folder;
@@ -212,4 +213,102 @@ TEST_CASE("objects of a 3MF that are made of another twice, 28 deep, are refused
     };
     CHECK(read(4).triangle.size() == 8 * 12);
     CHECK_THROWS_WITH(read(28), Catch::Contains("reading it takes more than the 8 GiB allowed"));
+}
+
+namespace {
+
+const std::string kMaterial = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
+
+// Red and green, as a colour group or as base materials.
+std::string red_and_green(bool as_group) {
+    return as_group
+               ? R"(<m:colorgroup id="7"><m:color color="#FF0000"/><m:color color="#00FF00"/></m:colorgroup>)"
+               : R"(<basematerials id="7"><base name="red" displaycolor="#FF0000"/><base name="green" displaycolor="#00FF00"/></basematerials>)";
+}
+
+struct Painted {
+    TriMesh mesh;
+    std::string told;
+
+    // Of all its triangles; -1: of no one colour.
+    Vec3 color() const {
+        Vec3 all = Vec3::Constant(-1);
+        for (std::size_t t = 0; t < mesh.triangle_material.size(); ++t) {
+            const Vec3& own = mesh.material[std::size_t(mesh.triangle_material[t])].color;
+            if (t > 0 && own != all) return Vec3::Constant(-1);
+            all = own;
+        }
+        return all;
+    }
+};
+
+Painted painted(const std::string& resources, const std::string& items = kOneItem) {
+    const Folder folder;
+    std::vector<std::string> finding;
+    Painted read;
+    read.mesh =
+        read_mesh(folder.write("a.3mf", test::zip_of(files_of(model("xmlns:m=\"" + kMaterial + "\"",
+                                                                    resources, items)))),
+                  {}, &finding);
+    for (const std::string& one : finding) read.told += one + "\n";
+    return read;
+}
+
+std::string object_of(const std::string& box, const std::string& attributes) {
+    return test::replaced(box, "type=\"model\"", "type=\"model\" " + attributes);
+}
+
+}  // namespace
+
+TEST_CASE("a 3MF's object has the colour that it names, of a group of colours too") {
+    const bool as_group = GENERATE(false, true), by_triangles = GENERATE(false, true);
+    CAPTURE(as_group, by_triangles);
+    const Painted read =
+        painted(red_and_green(as_group) +
+                (by_triangles ? box_object(1, {1, 1, 1}, R"( pid="7" p1="1")")
+                              : object_of(box_object(1, {1, 1, 1}), R"(pid="7" pindex="1")")));
+    CHECK(read.color() == Vec3(0, 1, 0));
+    CHECK(read.told.empty());
+}
+
+TEST_CASE("of a 3MF's object of several colours all is what most of it is, and that is told") {
+    const bool as_group = GENERATE(false, true);
+    CAPTURE(as_group);
+    std::string box = object_of(box_object(1, {1, 1, 1}), R"(pid="7" pindex="1")");
+    // The last of them, by which assimp goes, and one whose colours change across it.
+    box.insert(box.rfind("/>"), R"( pid="7" p1="0")");
+    box = test::replaced(box, R"(v3="1")", R"(v3="1" p1="1" p2="0" p3="1")");
+    const Painted read = painted(red_and_green(as_group) + box);
+    CHECK(read.color() == Vec3(0, 1, 0));
+    CHECK(test::says(read.told,
+                     "2 triangles have another colour than most of their object, which "
+                     "all of it was given"));
+}
+
+TEST_CASE("images in a 3MF's own lists are left out, told, and leave grey") {
+    const Painted read = painted(
+        R"(<m:texture2d id="3" path="/3D/t.png" contenttype="image/png"/><m:texture2dgroup id="7" texid="3"><m:tex2coord u="0" v="0"/><m:tex2coord u="1" v="0"/><m:tex2coord u="0" v="1"/></m:texture2dgroup>)" +
+        object_of(box_object(1, {1, 1, 1}, R"( pid="7" p1="0" p2="1" p3="2")"),
+                  R"(pid="7" pindex="0")"));
+    CHECK(test::says(read.told, "its images (texture2dgroup) were left out"));
+    CHECK_FALSE(test::says(read.told, "missing"));
+    CHECK(read.mesh.material.empty());  // and so is drawn in a grey
+    const Painted mixed = painted(
+        R"(<m:multiproperties id="9" pids="7"><m:multi pindices="0"/></m:multiproperties>)" +
+        box_object(1, {1, 1, 1}, R"( pid="9" p1="0")"));
+    CHECK(test::says(mixed.told, "materials of several parts (multiproperties) were left out"));
+}
+
+TEST_CASE("a 3MF's object that is no model is read as matter, which is told") {
+    const auto read = [](const std::string& type, const std::string& items) {
+        return painted(box_object(1, {1, 1, 1}) + test::replaced(box_object(2, {1, 1, 1}),
+                                                                 "\"model\"", "\"" + type + "\""),
+                       items);
+    };
+    const std::string both =
+        kOneItem + R"(<item objectid="2" transform="1 0 0 0 1 0 0 0 1 5 0 0"/>)";
+    CHECK(test::says(read("support", both).told,
+                     "object 2 is of type 'support' and becomes matter all the same"));
+    CHECK(read("model", both).told.empty());
+    CHECK(read("support", kOneItem).told.empty());  // not built, and so not read
 }

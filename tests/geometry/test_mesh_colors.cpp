@@ -135,6 +135,37 @@ TEST_CASE("a PLY's colours are bytes whatever whole numbers hold them") {
     CHECK(red_of("float", "0.25") == 0.25f);
 }
 
+TEST_CASE("colours of an OBJ or of a PLY's fractions that are counted to 255 are as screens do") {
+    const Folder folder;
+    const double most = GENERATE(1.0, 255.0);
+    CAPTURE(most);
+    const std::string color = fmt::format("{} {} 0", most, 0.5 * most);
+    const TriMesh obj = read_quietly(
+        folder.write("a.obj", "v 0 0 0 " + color + "\nv 1 0 0 " + color + "\nv 0 1 0\nv 0 0 1\n" +
+                                  "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"));
+    const auto is = [](const Eigen::Vector3f& found, const Vec3& wanted) {
+        return (found.cast<double>() - wanted).norm() < 1e-5;
+    };
+    const Vec3 screen(1, linear_from_srgb(0.5), 0);
+    REQUIRE(obj.position_color.size() == 4);
+    for (int v = 0; v < 4; ++v) {
+        const bool is_given = obj.position[v].y() == 0 && obj.position[v].z() == 0;
+        CHECK(is(obj.position_color[v], is_given ? screen : Vec3::Ones()));
+    }
+    const std::string type = GENERATE("float", "double");
+    std::string ply = "ply\nformat ascii 1.0\nelement vertex 3\n";
+    for (const char* name : {"x", "y", "z"}) ply += fmt::format("property float {}\n", name);
+    for (const char* name : {"red", "green", "blue"}) {
+        ply += fmt::format("property {} {}\n", type, name);
+    }
+    ply += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const char* place : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) ply += place + color + "\n";
+    const TriMesh read = read_quietly(folder.write("a.ply", ply + "3 0 1 2\n"));
+    REQUIRE(read.position_color.size() == 3);
+    // Fractions of a PLY are light itself.
+    CHECK(is(read.position_color[0], most == 1 ? Vec3(1, 0.5, 0) : screen));
+}
+
 TEST_CASE("an image lies where an OBJ file's material scales and shifts it to") {
     const Folder folder;
     folder.write("a.png", "png");

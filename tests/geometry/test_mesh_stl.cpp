@@ -136,3 +136,45 @@ TEST_CASE("an STL file that breaks off anywhere is refused, as text and binary")
                   .find("is cut short") != std::string::npos);
     }
 }
+
+TEST_CASE("text that tells places far from its origin is read as finely, or told of") {
+    // 2 cm, at 500 km.
+    const Folder folder;
+    const Vec3 far(5e5, -3e5, 1e5);
+    const TriMesh box = test::box_mesh(far, far + Vec3(0.02, 0.02, 0.02));
+    std::string text = "solid a\n";
+    for (const Corners& t : box.triangle) {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for (const int i : t) {
+            const Vec3& p = box.position[i];
+            text += fmt::format("vertex {:.3f} {:.3f} {:.3f}\n", p.x(), p.y(), p.z());
+        }
+        text += "endloop\nendfacet\n";
+    }
+    std::vector<std::string> finding;
+    const auto read = [&](const char* name, const std::string& bytes) {
+        finding.clear();
+        return read_mesh(folder.write(name, bytes), {}, &finding);
+    };
+    const TriMesh mesh = read("a.stl", text + "endsolid a\n");
+    CHECK((box_of(mesh.position).size() - Vec3(0.02, 0.02, 0.02)).norm() < 1e-9);
+    CHECK(mesh.position.size() == 8);
+    CHECK(finding.empty());
+    // Binary ones have no more than that themselves: 20 cm, at 5 km.
+    std::string bytes(80, ' ');
+    bytes += raw<std::uint32_t>(12);
+    for (const Corners& t : box.triangle) {
+        for (int k = 0; k < 3; ++k) bytes += raw<float>(0);
+        for (const int i : t) {
+            const Vec3 p = 0.01 * far + 10 * (box.position[i] - far);
+            for (int k = 0; k < 3; ++k) bytes += raw<float>(static_cast<float>(p[k]));
+        }
+        bytes += raw<std::uint16_t>(0);
+    }
+    read("b.stl", bytes);
+    REQUIRE(finding.size() == 1);
+    CHECK(finding[0].find("its places are rounded by up to 298 um") != std::string::npos);
+    CHECK(finding[0].find("move it nearer to its origin") != std::string::npos);
+    read("c.stl", cube_stl_binary());
+    CHECK(finding.empty());
+}
