@@ -46,4 +46,18 @@ TEST_CASE("a scale knows whether anything in any frame lies beyond either of its
     CHECK(beyond(stress, Range{1e7, 3e8}) == Ends{true, false});
     // What is a rounding beyond does not make an arrow.
     CHECK(beyond(stress, Range{0, 2e8 * (1 - 1e-6)}) == Ends{false, false});
+    // What has no sign goes from nothing on, though there is more of it everywhere.
+    RenderSettings settings;
+    settings.color = SkinField::stress;
+    std::vector<float> all(8, 1e8f);
+    {
+        FrameStoreWriter writer(scratch.path() / "more.bin", {SkinField::stress});
+        writer.add_skin(box);
+        StoredFrame now;
+        all[3] = 2e8f;
+        now.body = {{0, box.position, {all}}};
+        writer.add_frame(now);
+        writer.finish();
+    }
+    CHECK(FieldLook(FrameStore(scratch.path() / "more.bin"), settings).range() == Range{0, 2e8});
 }

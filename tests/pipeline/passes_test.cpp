@@ -7,6 +7,8 @@
 #include "geometry/box_mesh.h"
 #include "pipeline/draw.h"
 #include "pipeline/render_directory.h"
+#include "pipeline/shot.h"
+#include "render/exr.h"
 #include "render/image_read.h"
 #include "tests/catch.h"
 #include "tests/render/drawn.h"
@@ -212,4 +214,40 @@ TEST_CASE("frames are called from the first one's number on, and so are their pa
     CHECK(directory.remove_others({1, 1}, false, run.settings.passes) == 9);
     CHECK_FALSE(fs::exists(files.still(2)));
     CHECK(fs::exists(run.files().still(1)));
+}
+
+TEST_CASE("passes of floats hold what was drawn, by its names, and normals as in the world") {
+    TwoStages run;
+    run.settings.passes = {PicturePass::normal, PicturePass::motion, PicturePass::beauty};
+    const Quat drawn_from_world = drawn_from_up(GENERATE(Up::y, Up::z, Up::x, Up::minus_x));
+    const FrameStore store(run.store());
+    const DrawnFiles files = run.files();
+    fs::create_directories(files.still(1).parent_path());
+    PassWriter writer(store, run.settings, files, run.names, drawn_from_world);
+    PassPicture picture;
+    Layers& layers = picture.layers;
+    layers.width = 3, layers.height = 1;
+    layers.depth.assign(3, 1.0f), layers.item.assign(3, kGroundThere);
+    const std::vector<Vec3> world = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+    for (const Vec3& one : world) {
+        const Eigen::Vector3f drawn = (drawn_from_world * one).cast<float>();
+        layers.normal.push_back(drawn.array().round());
+        picture.motion.emplace_back(1, 2, 3, 4);
+        layers.beauty.insert(layers.beauty.end(), {0.125f, 0.25f, 0.5f, 1.0f});
+    }
+    writer.write(1, 0, picture);
+    const auto holds = [&](PicturePass pass, const std::vector<ExrChannel>& channels) {
+        CHECK(test::bytes_of(files.pass(1, pass)) == encode_exr(3, 1, channels));
+    };
+    const auto flat = [](float value) { return std::vector<float>(3, value); };
+    holds(PicturePass::normal,
+          {{"normal.X", {1, 0, 0}}, {"normal.Y", {0, 1, 0}}, {"normal.Z", {0, 0, 1}}});
+    holds(PicturePass::motion, {{"forward.u", flat(1)},
+                                {"forward.v", flat(2)},
+                                {"backward.u", flat(3)},
+                                {"backward.v", flat(4)}});
+    holds(PicturePass::beauty, {{"R", flat(0.125f), true},
+                                {"G", flat(0.25f), true},
+                                {"B", flat(0.5f), true},
+                                {"A", flat(1), true}});
 }

@@ -58,6 +58,19 @@ TEST_CASE("a plot leaves out what is nothing beside the rest: torques of forces,
     CHECK(shows(program(0, 1), "[N m]"));
 }
 
+TEST_CASE("of what turns about a known axis a plot shows the torque about that alone") {
+    StageCurves curves("1-twist", 1, {{"chuck", Pose{}}}, {}, 1,
+                       {TurnAxis{Vec3::UnitX(), Vec3::Zero()}}, {});
+    FrameReport report;
+    report.load.resize(1);
+    report.load[0].torque = {-3, 4, 0};
+    curves.add(2, report);
+    const std::string program = plot_program(curves, 0.1);
+    INFO(program);
+    CHECK(program.find(" 3\n") != std::string::npos);
+    CHECK(program.find(" 5\n") == std::string::npos);
+}
+
 TEST_CASE("gnuplot draws every plot, an empty one too") {
     if (!program_exists("gnuplot")) {
         WARN("skipped: gnuplot is not installed");

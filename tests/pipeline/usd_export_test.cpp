@@ -308,6 +308,21 @@ TEST_CASE("a file of USD says its units, its times and what is upward in it") {
     CHECK(bytes_of(motion.file()) == once);
 }
 
+TEST_CASE("what is upward along x is turned so that it is along y in a file of USD") {
+    Motion motion;
+    const double sign = GENERATE(1.0, -1.0);
+    motion.scene.render.up = sign > 0 ? Up::x : Up::minus_x;
+    const std::vector<float> row = motion.written().numbers("/two_falls.xformOp:transform", 1);
+    REQUIRE(row.size() == 16);
+    const auto at = [&](std::size_t axis) {
+        return Vec3(row[4 * axis], row[4 * axis + 1], row[4 * axis + 2]);
+    };
+    CHECK(at(0) == sign * Vec3::UnitY());
+    CHECK(at(0).dot(at(1).cross(at(2))) == 1);
+    CHECK(at(3) == Vec3::Zero());
+    CHECK(motion.written().text(".upAxis") == "\"Y\"");
+}
+
 TEST_CASE("an export gives way to another, nothing else does, and one that fails leaves nothing") {
     Motion motion;
     const auto refused = [&](const FrameRange& frames, ExitCode code) {

@@ -8,6 +8,7 @@
 #include "geometry/box_mesh.h"
 #include "render/camera.h"
 #include "render/exr.h"
+#include "render/layers.h"
 #include "tests/render/drawn.h"
 #include "tests/shared/bytes_of.h"
 #include "tests/shared/scratch.h"
@@ -152,6 +153,28 @@ TEST_CASE("each pixel is one item's, the nearest, and a still is the same with t
         if (layers.item[i] == 1) CHECK(layers.normal[i].norm() == Approx(1).margin(1e-4));
     }
     CHECK(hidden > 50);
+}
+
+TEST_CASE("a normal comes back from its octahedron, folded or not") {
+    std::mt19937 random(3);
+    std::normal_distribution<float> any;
+    std::vector<Eigen::Vector3f> normal;
+    std::vector<float> rgba;
+    for (int i = 0; i < 200; ++i) {
+        const Eigen::Vector3f n =
+            Eigen::Vector3f(any(random), any(random), any(random)).normalized();
+        const Eigen::Vector2f flat = n.head<2>() / n.lpNorm<1>();
+        const Eigen::Vector2f sign((n.x() >= 0) ? 1 : -1, (n.y() >= 0) ? 1 : -1);
+        const Eigen::Vector2f folded =
+            (Eigen::Vector2f::Ones() - flat.reverse().cwiseAbs()).cwiseProduct(sign);
+        const Eigen::Vector2f at = n.z() >= 0 ? flat : folded;
+        normal.push_back(n);
+        rgba.insert(rgba.end(), {at.x(), at.y(), 1.0f, layer_number(0)});
+    }
+    const Layers layers = layers_of(1, 200, rgba, 1);
+    for (std::size_t i = 0; i < 200; ++i) {
+        CHECK((layers.normal[199 - i] - normal[i]).norm() < 1e-5);
+    }
 }
 
 TEST_CASE("a file of floats is read by another program as what was written") {
