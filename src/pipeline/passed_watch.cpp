@@ -15,14 +15,14 @@ bool is_one(char marked) { return marked != 0; }
 }  // namespace
 
 PassedWatch::PassedWatch(const std::vector<WorkPiece>& bodies, const Apparatus& apparatus,
-                         const SimSettings& settings, std::vector<std::vector<char>> through)
+                         const SimSettings& settings, std::vector<std::vector<char>> again)
     : bodies_(bodies),
       apparatus_(apparatus),
       in_motion_(in_motion(settings.solver)),
-      through_(std::move(through)) {
-    const bool any_through = std::ranges::any_of(
-        through_, [](const auto& blades) { return std::ranges::any_of(blades, is_one); });
-    if (apparatus.blade.empty() || !(in_motion_ || any_through)) return;
+      again_(std::move(again)) {
+    const bool any_again = std::ranges::any_of(
+        again_, [](const auto& blades) { return std::ranges::any_of(blades, is_one); });
+    if (apparatus.blade.empty() || !(in_motion_ || any_again)) return;
     for (const WorkPiece& body : bodies) before_.push_back(body.matter.particle_position);
 }
 
@@ -40,8 +40,8 @@ std::size_t PassedWatch::count_again(const Drive& from, const Drive& to,
                                      const Simulation& simulation) const {
     std::size_t count = 0;
     for (std::size_t b = 0; b < before_.size(); ++b) {
-        if (!std::ranges::any_of(through_[b], is_one)) continue;
-        count += passed_in(b, through_[b], from, to, simulation);
+        if (!std::ranges::any_of(again_[b], is_one)) continue;
+        count += passed_in(b, again_[b], from, to, simulation);
     }
     return count;
 }

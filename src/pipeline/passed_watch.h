@@ -15,15 +15,15 @@ namespace swage {
 class PassedWatch {
   public:
     // As a leg of the machine's way begins. Keeps a reference to the bodies and the apparatus.
-    // `through`: of each body the blades that have been through it and out again.
+    // `again`: of each body the blades that go through it again.
     PassedWatch(const std::vector<WorkPiece>& bodies, const Apparatus& apparatus,
-                const SimSettings& settings, std::vector<std::vector<char>> through);
+                const SimSettings& settings, std::vector<std::vector<char>> again);
 
     // As it ends: the connections that have passed in motion, without those that are still to be
     // severed.
     std::size_t count_passed(const Drive& from, const Drive& to,
                              const Simulation& simulation) const;
-    // Those past blades that come through again, at rest too.
+    // Those past blades that go through again, at rest too.
     std::size_t count_again(const Drive& from, const Drive& to, const Simulation& simulation) const;
 
   private:
@@ -33,7 +33,7 @@ class PassedWatch {
     const std::vector<WorkPiece>& bodies_;
     const Apparatus& apparatus_;
     bool in_motion_;
-    std::vector<std::vector<char>> through_;
+    std::vector<std::vector<char>> again_;
     std::vector<Vec3Array> before_;  // of each body; none: nothing is looked for
 };
 

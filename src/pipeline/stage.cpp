@@ -255,7 +255,8 @@ class StageRun {
                 throw_if_interrupted();
                 if (legs > 0) follow_on_the_way();
                 cuts_.plan(simulation, legs > 0 ? frame : last_, number);
-                const PassedWatch uncut(bodies_, machine_.apparatus, stage_.sim, cuts_.through());
+                const PassedWatch uncut(bodies_, machine_.apparatus, stage_.sim,
+                                        cuts_.coming_again());
                 FrameReport report = [&] {
                     const auto lap = context_.watch.lap("simulate");
                     return simulation.advance(way_.now(), way_.next(), way_.between());

@@ -27,7 +27,8 @@ StageCuts::StageCuts(const StageSpec& stage, const Machine& machine, const Stage
       totals_(totals),
       warnings_(warnings),
       settled_(bodies.size(), Blades(machine.apparatus.blade.size(), 0)),
-      through_(settled_) {}
+      through_(settled_),
+      first_way_(bodies.size(), std::vector<Vec3>(machine.apparatus.blade.size(), Vec3::Zero())) {}
 
 bool StageCuts::is_cut(std::size_t body) const { return is_any(marked(body, kCut)); }
 
@@ -96,9 +97,26 @@ void StageCuts::settle(Simulation& simulation, std::size_t body, const Blades& b
     const bool is_cut = settle_cut(machine_, way_met(body, way_.ahead(), last), way_.steps(),
                                    blades, body, simulation, bodies_[body], number, warnings_);
     for (std::size_t n = 0; n < blades.size(); ++n) {
-        if (blades[n]) settled_[body][n] = is_cut ? kCut : kGrazed;
+        if (!blades[n]) continue;
+        settled_[body][n] = is_cut ? kCut : kGrazed;
+        first_way_[body][n] = way_ahead(n);
     }
     if (!is_cut) totals_.entered = bodies_[body].matter.lattice.spacing;
+}
+
+Vec3 StageCuts::way_ahead(std::size_t blade) const {
+    return way_between(machine_.apparatus.blade[blade], way_.now().world_from_blade[blade],
+                       way_.next().world_from_blade[blade]);
+}
+
+std::vector<StageCuts::Blades> StageCuts::coming_again() const {
+    std::vector<Blades> again = through_;
+    for (std::size_t b = 0; b < again.size(); ++b) {
+        for (std::size_t n = 0; n < again[b].size(); ++n) {
+            again[b][n] = again[b][n] && way_ahead(n).dot(first_way_[b][n]) > 0;
+        }
+    }
+    return again;
 }
 
 // Those that move beside what they have cut, and no more in it.

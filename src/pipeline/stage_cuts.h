@@ -24,8 +24,9 @@ class StageCuts {
 
     bool any_blade() const { return !machine_.apparatus.blade.empty(); }
     bool is_cut(std::size_t body) const;
-    // Of each body: the blades that have cut it and come out again.
-    const std::vector<std::vector<char>>& through() const { return through_; }
+    // Of each body: the blades that have cut it, came out and go once more as they first did on the
+    // leg ahead; on their way back they are no blades.
+    std::vector<std::vector<char>> coming_again() const;
 
     // As a leg begins: once a blade is about to reach a body its whole cut is settled, as the body
     // lies then; in its matter and, along the same path, in its skin. `last`: how the leg before
@@ -36,7 +37,7 @@ class StageCuts {
 
     template <typename Io>
     void visit(Io& io) {
-        io(settled_, through_);
+        io(settled_, through_, first_way_);
     }
 
   private:
@@ -45,6 +46,7 @@ class StageCuts {
     static constexpr char kCut = 1, kGrazed = 2;
 
     Blades marked(std::size_t body, char as) const;
+    Vec3 way_ahead(std::size_t blade) const;  // on the next leg
     Blades reaching(const Simulation& simulation, std::size_t body, const Blades& of,
                     std::span<const Drive> leg) const;
     std::vector<Drive> way_met(std::size_t body, std::span<const Drive> way,
@@ -60,7 +62,8 @@ class StageCuts {
     std::vector<WorkPiece>& bodies_;
     StageTotals& totals_;
     WarningBook& warnings_;
-    std::vector<Blades> settled_, through_;  // of each body
+    std::vector<Blades> settled_, through_;     // of each body
+    std::vector<std::vector<Vec3>> first_way_;  // likewise, on the leg on which it began to cut
 };
 
 }  // namespace swage

@@ -239,7 +239,7 @@ std::string why_nothing_is_cut(const StageEnd& end) {
 }
 
 // What a blade has found on its way that had been through and out again, and what had moved since.
-// It cuts none of that; less than a tenth of all cuts is what it leaves of the first time, crumbs.
+// It cuts none of that; less than a tenth of all cuts may be crumbs that it left the first time.
 std::string uncut_again(const StageEnd& end) {
     const std::size_t again = end.totals.passed_again;
     if (10 * again <= static_cast<std::size_t>(end.totals.severed)) return {};

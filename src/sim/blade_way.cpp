@@ -40,11 +40,10 @@ std::vector<Drive> way_in_flight(const Aggregate& matter, const Apparatus& appar
         velocity += gained;
     }
     for (std::size_t b = 0; b < apparatus.blade.size(); ++b) {
-        const Vec3 middle = middle_of_edge(apparatus.blade[b]);
         Vec3 farther = Vec3::Zero();
         for (std::size_t n = 1; n < way.size(); ++n) {
-            const Vec3 goes =
-                way[n].world_from_blade[b] * middle - way[n - 1].world_from_blade[b] * middle;
+            const Vec3 goes = way_between(apparatus.blade[b], way[n - 1].world_from_blade[b],
+                                          way[n].world_from_blade[b]);
             const double length = goes.norm();
             if (length > 0) {
                 const Vec3 along = goes / length;
@@ -66,6 +65,11 @@ std::vector<Drive> way_of(const std::vector<char>& blades, std::span<const Drive
     return own;
 }
 
+Vec3 way_between(const Blade& blade, const Pose& from, const Pose& to) {
+    const Vec3 middle = middle_of_edge(blade);
+    return to * middle - from * middle;
+}
+
 bool is_gripped(const Apparatus& apparatus, std::size_t body) {
     return std::ranges::any_of(apparatus.grip, [&](const Grip& grip) {
         return static_cast<std::size_t>(grip.body) == body && !grip.point.empty();
@@ -83,6 +87,8 @@ std::size_t count_passed(const Aggregate& matter, const Vec3Array& before,
                                                     to.world_from_blade[b])) {
             for (const Vec3& corner : triangle) near.back().grow(corner);
         }
+        // A blade is looked at a little beside its place (sim/sever.cpp).
+        near.back() = near.back().widened(1e-3 * matter.lattice.spacing);
     }
     // Seen from its middle a connection stands, and the blade comes by what that has moved less.
     const auto is_passed = [&](std::size_t b, std::size_t lower, std::size_t upper) {

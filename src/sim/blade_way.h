@@ -21,6 +21,9 @@ std::vector<Drive> way_in_flight(const Aggregate& matter, const Apparatus& appar
 // The way on which the others than the marked blades stand still, and so sweep nothing.
 std::vector<Drive> way_of(const std::vector<char>& blades, std::span<const Drive> way);
 
+// How far the middle of its edge goes.
+Vec3 way_between(const Blade& blade, const Pose& from, const Pose& to);
+
 bool is_gripped(const Apparatus& apparatus, std::size_t body);
 
 // How many unsevered connections have gone past an edge, or it past them, on this way since their

@@ -237,7 +237,7 @@ TEST_CASE("passes of floats hold what was drawn, by its names, and normals as in
     }
     writer.write(1, 0, picture);
     const auto holds = [&](PicturePass pass, const std::vector<ExrChannel>& channels) {
-        CHECK(test::bytes_of(files.pass(1, pass)) == encode_exr(3, 1, channels));
+        CHECK((test::bytes_of(files.pass(1, pass)) == encode_exr(3, 1, channels)));
     };
     const auto flat = [](float value) { return std::vector<float>(3, value); };
     holds(PicturePass::normal,
