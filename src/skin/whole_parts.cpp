@@ -142,13 +142,4 @@ bool follow_piece_beside(const TriMesh& skin, Mount& mount, const Aggregate& mat
     return all;
 }
 
-bool spans_pieces(const TriMesh& skin, const Mount& mount, const Aggregate& matter) {
-    const PieceMap map(matter);
-    return std::ranges::any_of(parts_of(skin), [&](const Part& part) {
-        return std::ranges::any_of(part.vertex, [&](int v) {
-            return map.piece_of(mount.place(v)) != map.piece_of(mount.place(part.vertex.front()));
-        });
-    });
-}
-
 }  // namespace swage

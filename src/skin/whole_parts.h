@@ -21,7 +21,4 @@ void follow_one_piece(const TriMesh& skin, Mount& mount, const Aggregate& matter
 // beside no piece all over.
 bool follow_piece_beside(const TriMesh& skin, Mount& mount, const Aggregate& matter);
 
-// Whether any connected part of the skin follows several pieces, and is stretched as these part.
-bool spans_pieces(const TriMesh& skin, const Mount& mount, const Aggregate& matter);
-
 }  // namespace swage
