@@ -23,7 +23,8 @@ double CutPlane::distance(const Vec3& from) const {
     const Vec3 way = from - place;
     const double across = std::abs(way.dot(normal));
     const double along = std::sqrt(std::max(0.0, way.squaredNorm() - across * across));
-    return std::hypot(across, std::max(0.0, along - kBeside));
+    const double past = std::max(0.0, along - kBeside);
+    return std::sqrt(across * across + past * past);
 }
 
 CutPlanes::CutPlanes(const Aggregate& matter) : point_(matter.cut) {

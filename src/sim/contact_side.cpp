@@ -210,7 +210,12 @@ RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
     const Vec3 out = place - place.cwiseMax(0.0).cwiseMin(1.0);
     const double far = out.norm();
     const double most = beyond(cell);
-    if (far - most > face.distance && far > 0) face = {far - most, out / far};
+    if (far > 0 && most > CutSurface::kBeforeBreak && face.distance < -most) {
+        const double left = 1 - far / most;  // of what is deeper, so that it does not jump there
+        face = {left * face.distance, left * face.gradient - face.distance / (most * far) * out};
+    } else if (far > 0 && far - most > face.distance) {
+        face = {far - most, out / far};
+    }
     return own && own->distance > face.distance ? *own : face;
 }
 
