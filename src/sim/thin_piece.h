@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A piece in which blades have left no whole cell, as contact in motion has it: a body of its own.
-// Its new surface runs half-way to the particles that are not the piece's, as elsewhere
-// (matter/touch_points.h), and where there are none the surface as molded ends it. A layer of
+// Its new surface runs half-way to the particles that are not the piece's, wherever between them
+// the blade went, and where there are none the surface as molded ends it. A layer of
 // particles has the cells between them, half a spacing to either side; what else there may be has a
 // cell about each particle. Corners of these cells, which are no particles, follow the nearest of
 // the piece's,
