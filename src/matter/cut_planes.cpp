@@ -12,7 +12,6 @@ namespace swage {
 namespace {
 
 constexpr double kReach = 2, kBeside = 1;  // cells
-constexpr double kLike = 0.92;             // cosine of directions that count as one
 constexpr std::size_t kMost = 3;
 
 Vec3 in_doubles(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
@@ -62,7 +61,7 @@ std::vector<CutPlane> CutPlanes::around(const Vec3& place) const {
         const CutPoint& cut = point_[std::size_t(point)];
         const CutPlane plane{in_doubles(cut.place), in_doubles(cut.normal)};
         const bool is_new = std::ranges::none_of(planes, [&](const CutPlane& known) {
-            return std::abs(known.normal.dot(plane.normal)) > kLike;
+            return std::abs(known.normal.dot(plane.normal)) > kOneWay;
         });
         if (is_new) planes.push_back(plane);
         if (planes.size() == kMost) break;

@@ -11,6 +11,9 @@
 
 namespace swage {
 
+// Cosine of directions that count as one: 23 degrees apart.
+inline constexpr double kOneWay = 0.92;
+
 struct CutPlane {
     Vec3 place, normal;  // unit, to either side
 
@@ -22,8 +25,8 @@ class CutPlanes {
   public:
     explicit CutPlanes(const Aggregate& matter);
 
-    // Those that come within two cells, the nearest of each of up to three directions, which differ
-    // by a quarter of a right angle or more; the nearest first.
+    // Those that come within two cells, the nearest of each of up to three directions (kOneWay);
+    // the nearest first.
     std::vector<CutPlane> around(const Vec3& place) const;
 
     bool empty() const { return point_.empty(); }

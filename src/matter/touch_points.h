@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The points of a body with which it meets tools, other bodies and itself: those of its surface as
-// molded, with its edges and corners, and where cells are no longer whole, cut or broken, a new
-// surface: a point before each face of a whole cell that looks at one, which the whole cell
-// carries. It lies where the blade went, or half a spacing out where a load broke the matter. What
-// a blade has left of a cell on either side of its
-// path is carried by a whole one of that side (matter/point_side.h). Else what a cell no longer
-// whole carries meets nothing; particles that no whole cell has left meet by themselves.
+// The points of a body with which it meets tools, other bodies and itself: those of its surface
+// as molded, with its edges and corners, and where cells are no longer whole, cut or broken, a
+// new surface: a point before each face of a whole cell that looks at one, which the whole cell
+// carries. It lies where the blade went, or half a spacing out where a load broke the matter.
+// What a blade has left of a cell on either side of its path is carried by a whole one of that
+// side (matter/point_side.h). Else what a cell no longer whole carries meets nothing; particles
+// that no whole cell has left meet by themselves.
 #pragma once
 
 #include <map>
@@ -22,8 +22,8 @@ namespace swage {
 class TouchPoints {
   public:
     // `beside_cuts`: whether what blades have left of cells meets anything. NOTE: among bodies it
-    // does not: cells of each side hold what comes up to half-way through a cut cell, wherever in
-    // it the blade went, and would hold the other side's outside there too.
+    // does not, from when each side held what came half-way through a cut cell, wherever in it the
+    // blade went. Now that its path is known it could.
     explicit TouchPoints(const Aggregate& matter, bool beside_cuts = true);
 
     // A point and what carried it before.

@@ -11,10 +11,9 @@ namespace swage {
 
 namespace {
 
-constexpr int kReach = 2;       // cells that corners are told from
-constexpr float kDeep = -2.5f;  // of what lies deeper
-constexpr double kLike = 0.92;  // cosine of directions that count as one
-constexpr double kTouch = 1e-3;
+constexpr int kReach = 2;        // cells that corners are told from
+constexpr float kDeep = -2.5f;   // of what lies deeper
+constexpr double kTouch = 1e-3;  // cells that a plane may seem to go into one beside it
 
 using Depths = std::unordered_map<std::uint64_t, float>;  // of corners; looked up only
 
@@ -109,7 +108,7 @@ std::vector<CutSurface::Plane> CutSurface::planes_of(const Vec3i& site,
         const Vec3 n = plane.normal;
         if (plane.depth + n.cwiseMax(0.0).sum() > kTouch) continue;
         const auto like = std::ranges::find_if(
-            planes, [&](const Plane& known) { return known.normal.dot(n) > kLike; });
+            planes, [&](const Plane& known) { return known.normal.dot(n) > kOneWay; });
         if (like == planes.end()) {
             planes.push_back(plane);
         } else if (plane.depth + n.dot(half) > like->depth + like->normal.dot(half)) {

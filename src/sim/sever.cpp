@@ -13,6 +13,7 @@
 
 #include "geometry/box.h"
 #include "geometry/triangle_tree.h"
+#include "matter/particle_site.h"
 
 namespace swage {
 
@@ -133,14 +134,9 @@ bool crosses(const std::vector<Triangle>& swept, const Vec3& from, const Vec3& t
 
 namespace {
 
-Vec3i site_of(const Aggregate& matter, ParticleId p) {
-    const Vec3 at = matter.particle_reference.at(std::size_t(p)) - matter.lattice.origin;
-    return (at / matter.lattice.spacing).array().round().cast<int>();
-}
-
 // Mean deformation of a whole cell that the connection lies in; none where there is no such cell.
 std::optional<Mat3> deformation_at(const Aggregate& matter, const SeverEvent& event) {
-    const Vec3i a = site_of(matter, event.lower), b = site_of(matter, event.upper);
+    const Vec3i a = lattice_site(matter, event.lower), b = lattice_site(matter, event.upper);
     for (int back = 0; back < 8; ++back) {
         const Vec3i step = corner_step(back);
         if ((step.array() * (a - b).array() != 0).any()) continue;
@@ -237,7 +233,7 @@ void sever(Aggregate& matter, std::span<const SeverEvent> events) {
     for (const SeverEvent& e : events) {
         matter.connection[e.direction].weight.set(e.lower, 0);
         if (e.normal == SeverEvent().normal) continue;
-        const Vec3i a = site_of(matter, e.lower), b = site_of(matter, e.upper);
+        const Vec3i a = lattice_site(matter, e.lower), b = lattice_site(matter, e.upper);
         const Eigen::Vector3f at = a.cast<float>() + e.share * (b - a).cast<float>();
         matter.cut.push_back({{at.x(), at.y(), at.z()}, e.normal});
     }

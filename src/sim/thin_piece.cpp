@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "matter/open_faces.h"
+#include "matter/particle_site.h"
 
 namespace swage {
 
@@ -18,11 +19,6 @@ constexpr std::array<double, 3> kReach{0.5, 1.5, 2.5};
 constexpr double kLayerReach = 2;
 constexpr double kFolded = 0.3;  // of a layer's area, pressed together by less than that
 constexpr double kFlat = 0.1;    // of their spread, across which particles lie in a plane, or a row
-
-Vec3i site_at(const Aggregate& matter, ParticleId p) {
-    const Vec3 at = matter.particle_reference.at(std::size_t(p)) - matter.lattice.origin;
-    return (at / matter.lattice.spacing).array().round().cast<int>();
-}
 
 }  // namespace
 
@@ -53,7 +49,7 @@ std::unique_ptr<ThinPiece> ThinPiece::find(const Aggregate& of, const RestSurfac
     std::unique_ptr<ThinPiece> piece(new ThinPiece(of, std::move(particles)));
     piece->slot_.assign(of.particle_count(), -1);
     for (std::size_t n = 0; n < piece->particle_.size(); ++n) {
-        piece->by_site_.emplace_back(key_of(site_at(of, piece->particle_[n])), int(n));
+        piece->by_site_.emplace_back(key_of(lattice_site(of, piece->particle_[n])), int(n));
         piece->slot_[std::size_t(piece->particle_[n])] = static_cast<int>(n);
     }
     std::sort(piece->by_site_.begin(), piece->by_site_.end());
@@ -73,7 +69,7 @@ int ThinPiece::number_at(const Vec3i& site) const {
     return at != by_site_.end() && at->first == key ? at->second : -1;
 }
 
-Vec3i ThinPiece::site_of(std::size_t number) const { return site_at(*of_, particle_[number]); }
+Vec3i ThinPiece::site_of(std::size_t number) const { return lattice_site(*of_, particle_[number]); }
 
 // Whether it is a layer across this axis that is cut nowhere else: all of it that there is in the
 // cells above and below is the piece's.
