@@ -121,7 +121,7 @@ void cut_insets(std::vector<CarriedInset>& insets, const Aggregate& matter,
                 const std::vector<std::array<Vec3, 3>>& sweep) {
     for (CarriedInset& one : insets) {
         const CutResult cut = cut_skin(one.mesh, one.position, one.mount, matter, sweep);
-        one.is_torn = one.is_torn || cut.has_curved;
+        one.is_torn = one.is_torn || cut.has_folded;
     }
 }
 
@@ -143,8 +143,8 @@ std::vector<Inset> insets_now(const std::vector<CarriedInset>& insets, const Agg
         const CarriedInset& one = insets[n];
         if (one.is_torn) {
             fail(ExitCode::stopped,
-                 "cannot mold anew: a blade's path bends or turns within inset {}, which cannot be "
-                 "cut along it",
+                 "cannot mold anew: a blade's path turns back over itself within inset {}, which "
+                 "cannot be cut along it",
                  n + 1);
         }
         TriMesh mesh = one.mesh;

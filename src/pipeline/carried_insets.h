@@ -19,7 +19,7 @@ struct CarriedInset {
     TriMesh mesh;  // closed; its positions: as mounted
     Mount mount;
     std::vector<Vec3> position;  // now [m]
-    // A blade's path bends or turns within it: it is not cut along that.
+    // A blade's path turns back over itself within it: it is not cut along that.
     bool is_torn = false;
     SurfaceMaterial look = {};  // of cut faces that show it
 };

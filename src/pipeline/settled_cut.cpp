@@ -45,15 +45,16 @@ void warn_of(const CutResult& cut, int frame, WarningBook& warnings) {
                      fmt::format("{} open part{} of the skin could not be closed where it is cut",
                                  cut.open_parts, cut.open_parts == 1 ? "" : "s"));
     }
-    if (cut.has_curved) {
+    if (cut.has_folded) {
         warnings.add(frame,
-                     "a blade's path bends or turns within the work-piece, so the skin is torn "
-                     "along it and left open (skin.kind = \"boundary\" is made anew and closed)");
+                     "a blade's path turns back over itself within the work-piece, so the skin is "
+                     "torn along it and left open (skin.kind = \"boundary\" is made anew and "
+                     "closed)");
     }
 }
 
 // Of the pieces that a cut would make, which are to stay with what they would be cut from. A skin
-// that is made anew, or torn along a path that bends, is parted as the matter is; rubble has pieces
+// that is made anew, or torn along a path that folds, is parted as the matter is; rubble has pieces
 // without a skin.
 std::vector<char> pieces_to_keep(const WorkPiece& piece, const Aggregate& ahead) {
     const Pieces pieces = find_pieces(ahead);

@@ -365,12 +365,12 @@ CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sw
     if (!is_cut) return {};
     CutResult shown =
         cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep, insides);
-    piece.is_torn = piece.is_torn || shown.has_curved;
-    piece.is_parted = piece.is_parted || shown.planes > 0;
+    piece.is_torn = piece.is_torn || shown.has_folded;
+    piece.is_parted = piece.is_parted || shown.cuts > 0;
     if (piece.look) {
         // What it cannot be cut along, or not so that it closes, is made anew once it is severed.
         piece.is_torn = piece.is_torn || shown.open_parts > 0;
-        shown.open_parts = 0, shown.has_curved = false;
+        shown.open_parts = 0, shown.has_folded = false;
     }
     if (!piece.whole_skin) return shown;
     CutResult whole = cut_skin(*piece.whole_skin, piece.whole_position, piece.whole_mount,

@@ -11,11 +11,12 @@
 #include "geometry/disjoint_sets.h"
 #include "geometry/mesh_edit.h"
 #include "matter/cell_middle.h"
+#include "skin/blade_path.h"
 #include "skin/body_map.h"
+#include "skin/halve_along.h"
 #include "skin/piece_map.h"
 #include "skin/split_attributes.h"
 #include "skin/surface_split.h"
-#include "skin/sweep_plane.h"
 
 namespace swage {
 
@@ -28,29 +29,31 @@ constexpr double kChipShare = 0.01;
 // jump of the map.
 constexpr double kLeavesChord = 0.1;
 
-// A plane, and the side of it that each vertex must follow; 0: as it likes.
-struct SidedPlane {
-    SweepPlane plane;
+// Spacings: the longest edge along a path that bends.
+constexpr double kBentEdge = 0.5;
+
+// A path, and the side of it that each vertex must follow; 0: as it likes.
+struct SidedPath {
+    BladePath path;
     std::vector<int> own = {};
 };
 
 // What blades that have severed nothing yet have cut.
 struct CutSoFar {
-    std::vector<SidedPlane> plane;
+    std::vector<SidedPath> path;
     std::vector<std::array<int, 2>> chip_link;  // vertices of chips, and of what they stay with
 };
 
-// One cut along one plane.
-class PlaneCut {
+// One cut along one path.
+class PathCut {
   public:
-    PlaneCut(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
-             const Aggregate& matter, const SweepPlane& plane, const Insides& insides,
-             CutSoFar& so_far)
+    PathCut(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount, const Aggregate& matter,
+            const BladePath& path, const Insides& insides, CutSoFar& so_far)
         : mesh_(mesh),
           position_(position),
           mount_(mount),
           matter_(matter),
-          plane_(plane),
+          path_(path),
           insides_(insides),
           so_far_(so_far),
           map_(matter),
@@ -58,7 +61,9 @@ class PlaneCut {
 
     SurfaceSplit run() {
         const double a = matter_.lattice.spacing;
-        SurfaceSplit split = split_surface(mesh_, position_, plane_, a, insides_);
+        // Seen along the plane's normal, which makes steep parts short.
+        const double apart = path_.relief ? kBentEdge * a * std::min(1.0, 2 / path_.steepest) : a;
+        SurfaceSplit split = split_surface(mesh_, position_, path_, apart, insides_);
         std::vector<int> own = sides_of_old(split);
         if (split.seam_edges == 0) {
             pass_by(std::move(own));
@@ -91,11 +96,11 @@ class PlaneCut {
             mount_.add(place);
         }
         leave_chips(split, world, own);
-        for (SidedPlane& other : so_far_.plane) add_sides(split, world, other);
-        so_far_.plane.push_back({plane_, std::move(own)});
-        for (const SidedPlane& one : so_far_.plane) {
+        for (SidedPath& other : so_far_.path) add_sides(split, world, other);
+        so_far_.path.push_back({path_, std::move(own)});
+        for (const SidedPath& one : so_far_.path) {
             // What was there keeps to those before this one already.
-            const bool is_new = &one == &so_far_.plane.back();
+            const bool is_new = &one == &so_far_.path.back();
             for (int v = is_new ? 0 : old; v < static_cast<int>(world.size()); ++v) {
                 take_side(v, one, world[v]);
             }
@@ -108,8 +113,8 @@ class PlaneCut {
     }
 
   private:
-    // One that lies on the plane, or nearly, is with its triangles. A part of the surface that is
-    // not cut is all on one side, however near the plane it lies; on both, as it likes.
+    // One that lies on the path, or nearly, is with its triangles. A part of the surface that is
+    // not cut is all on one side, however near the path it lies; on both, as it likes.
     std::vector<int> sides_of_old(const SurfaceSplit& split) const {
         std::vector<char> above(position_.size(), 0), below(position_.size(), 0);
         for (const SplitTriangle& t : split.triangle) {
@@ -121,7 +126,7 @@ class PlaneCut {
         }
         std::vector<int> own;
         for (std::size_t v = 0; v < position_.size(); ++v) {
-            own.push_back(plane_.height(position_[v]) >= 0 ? 1 : -1);
+            own.push_back(path_.height(position_[v]) >= 0 ? 1 : -1);
             if (above[v] != below[v]) own[v] = above[v] ? 1 : -1;
         }
         const Components parts = surface_components(mesh_);
@@ -149,11 +154,11 @@ class PlaneCut {
     // The blade goes through a gap: it parts the matter of cells that reach across it, and what
     // lies on either side of it is to follow its own.
     void pass_by(std::vector<int> own) {
-        so_far_.plane.push_back({plane_, std::move(own)});
+        so_far_.path.push_back({path_, std::move(own)});
         std::vector<Vec3> before;
         skin_positions(mount_, matter_, before);
         for (std::size_t v = 0; v < position_.size(); ++v) {
-            take_side(static_cast<int>(v), so_far_.plane.back(), position_[v]);
+            take_side(static_cast<int>(v), so_far_.path.back(), position_[v]);
         }
         finish_mount(mount_, matter_);
         hold_places(mount_, matter_, before);
@@ -175,7 +180,7 @@ class PlaneCut {
         double all = 0;
         for (const SplitTriangle& t : split.triangle) {
             const auto& [a, b, c] = t.vertex;
-            const Vec3& from = plane_.point;
+            const Vec3& from = path_.point;
             const double under =
                 (world[a] - from).dot((world[b] - from).cross(world[c] - from)) / 6;
             volume[part[a]] += under;
@@ -185,7 +190,7 @@ class PlaneCut {
         const double least = std::min(matter_.lattice.cell_volume(), kChipShare * std::abs(all));
         std::vector<double> far(volume.size(), 0.0);
         for (std::size_t v = 0; v < own.size(); ++v) {
-            far[part[v]] = std::max(far[part[v]], std::abs(plane_.height(world[v])));
+            far[part[v]] = std::max(far[part[v]], std::abs(path_.height(world[v])));
         }
         const auto is_chip = [&](int v) {
             return is_cut[part[v]] && std::abs(volume[part[v]]) < least &&
@@ -223,9 +228,9 @@ class PlaneCut {
         }
     }
 
-    // Of what this cut adds, the sides of a plane before it.
+    // Of what this cut adds, the sides of a path before it.
     void add_sides(const SurfaceSplit& split, const std::vector<Vec3>& world,
-                   SidedPlane& other) const {
+                   SidedPath& other) const {
         const auto old = static_cast<int>(other.own.size());
         for (std::size_t n = 0; n < split.added.size(); ++n) {
             const int raw = split.added[n].raw, at = raw - old;
@@ -235,7 +240,7 @@ class PlaneCut {
                 const int low = other.own[split.cut[at].low], high = other.own[split.cut[at].high];
                 other.own.push_back(low == high ? low : 0);
             } else {
-                other.own.push_back(other.plane.height(world[old + n]) >= 0 ? 1 : -1);
+                other.own.push_back(other.path.height(world[old + n]) >= 0 ? 1 : -1);
             }
         }
     }
@@ -246,18 +251,18 @@ class PlaneCut {
                               ends);
     }
 
-    // Where each edge of the mesh, straight at molding and curved by now, meets the plane. Regula
+    // Where each edge of the mesh, straight at molding and curved by now, meets the path. Regula
     // falsi, Illinois variant. `world`: where what is held is held; the chord's where the map
     // jumps.
     void find_cut_places(const SurfaceSplit& split, std::vector<BodyPlace>& places,
                          std::vector<double>& share, std::vector<Vec3>& world) const {
         for (const EdgeCut& cut : split.cut) {
             double s0 = 0, s1 = 1;
-            double h0 = plane_.height(position_[cut.low]), h1 = plane_.height(position_[cut.high]);
+            double h0 = path_.height(position_[cut.low]), h1 = path_.height(position_[cut.high]);
             double s = cut.share;
             BodyPlace place = on_edge(cut, s);
             for (int round = 0; round < 30; ++round) {
-                const double h = plane_.height(map_.world(place));
+                const double h = path_.height(map_.world(place));
                 if (std::abs(h) <= 1e-9 * matter_.lattice.spacing || s1 - s0 < 1e-12) break;
                 if ((h > 0) == (h1 > 0)) {
                     s1 = s, h1 = h, h0 *= 0.5;
@@ -273,7 +278,7 @@ class PlaneCut {
             if ((at - chord).norm() > kLeavesChord * (high - low).norm()) at = chord;
             places.push_back(place);
             share.push_back(s);
-            world.push_back(plane_.world(plane_.flat(at)));
+            world.push_back(path_.world(path_.flat(at)));
         }
     }
 
@@ -290,14 +295,15 @@ class PlaneCut {
         }
     }
 
-    // Cells that the plane crosses, or nearly.
+    // Cells that the path crosses, or nearly.
     std::vector<MappedCell> crossed_cells() const {
         std::vector<MappedCell> cells;
         const double a = matter_.lattice.spacing;
         const CellId count = static_cast<CellId>(matter_.cell_fill.size());
         for (CellId cell = 0; cell < count; ++cell) {
             const Vec3 middle = cell_middle(matter_, cell);
-            if (std::abs(plane_.height(middle)) < 2 * a && plane_.near(plane_.flat(middle), a)) {
+            if (std::abs(path_.height(middle)) < 2 * a * path_.steepest &&
+                path_.near(path_.flat(middle), a)) {
                 cells.push_back(map_.mapped(cell));
             }
         }
@@ -357,22 +363,22 @@ class PlaneCut {
         }
     }
 
-    CornerMask corners_on_side(CellId cell, const SweepPlane& plane, int own) const {
+    CornerMask corners_on_side(CellId cell, const BladePath& path, int own) const {
         const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
         CornerMask mask = 0;
         for (int c = 0; c < 8; ++c) {
             const Vec3 at = matter_.particle_position.at(corner[c]);
-            mask |= static_cast<CornerMask>((plane.height(at) >= 0 ? 1 : -1) == own) << c;
+            mask |= static_cast<CornerMask>((path.height(at) >= 0 ? 1 : -1) == own) << c;
         }
         return mask;
     }
 
-    void take_side(int v, const SidedPlane& one, const Vec3& world) {
+    void take_side(int v, const SidedPath& one, const Vec3& world) {
         const double a = matter_.lattice.spacing;
         const int own = one.own[v];
-        if (own == 0 || std::abs(one.plane.height(world)) > 4 * a) return;
-        const CornerMask mask = corners_on_side(mount_.cell[v], one.plane, own);
-        if (mask == kAllCorners || !one.plane.near(one.plane.flat(world), 2 * a)) return;
+        if (own == 0 || std::abs(one.path.height(world)) > 4 * a * one.path.steepest) return;
+        const CornerMask mask = corners_on_side(mount_.cell[v], one.path, own);
+        if (mask == kAllCorners || !one.path.near(one.path.flat(world), 2 * a)) return;
         if (mount_.side[v] & mask) {
             mount_.side[v] &= mask;
         } else {
@@ -380,7 +386,7 @@ class PlaneCut {
         }
     }
 
-    // None of the cell's corners is on the vertex's side of a plane: the nearest cell takes it that
+    // None of the cell's corners is on the vertex's side of a path: the nearest cell takes it that
     // has one on its side of all.
     void change_cell(int v, const Vec3& world) {
         const double a = matter_.lattice.spacing;
@@ -388,9 +394,9 @@ class PlaneCut {
         const int piece = pieces_.piece_of(mount_.place(v));
         const auto side_in = [&](CellId cell, const Vec3i&) -> CornerMask {
             CornerMask side = pieces_.side_of_piece(cell, reference, piece);
-            for (const SidedPlane& one : so_far_.plane) {
-                const bool parts = one.own[v] != 0 && one.plane.near(one.plane.flat(world), 2 * a);
-                if (parts) side &= corners_on_side(cell, one.plane, one.own[v]);
+            for (const SidedPath& one : so_far_.path) {
+                const bool parts = one.own[v] != 0 && one.path.near(one.path.flat(world), 2 * a);
+                if (parts) side &= corners_on_side(cell, one.path, one.own[v]);
             }
             return side;
         };
@@ -404,7 +410,7 @@ class PlaneCut {
     const std::vector<Vec3>& position_;
     Mount& mount_;
     const Aggregate& matter_;
-    const SweepPlane& plane_;
+    const BladePath& path_;
     const Insides& insides_;
     CutSoFar& so_far_;  // in the end with this one
     const BodyMap map_;
@@ -419,15 +425,18 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
     CutResult result;
     const double a = matter.lattice.spacing;
     std::vector<Vec3> now = position;
-    SweepPlanes swept = sweep_planes(sweep, box_of(position).widened(a), 1e-3 * a);
-    result.has_curved = swept.has_curved;
-    CutSoFar cut;
-    for (SweepPlane& plane : swept.plane) {
+    BladePaths swept = blade_paths(sweep, box_of(position).widened(a), 1e-3 * a);
+    result.has_folded = swept.has_folded;
+    for (BladePath& path : swept.path) {
         // As the blade does, which never runs exactly through a particle.
-        plane.point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
-        if (result.planes > 0) skin_positions(mount, matter, now);
-        const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, plane, insides, cut).run();
-        result.planes += split.seam_edges > 0;
+        path.point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+        if (path.relief) halve_edges_along(path, kBentEdge * a, mesh, now, mount, matter);
+    }
+    CutSoFar cut;
+    for (const BladePath& path : swept.path) {
+        if (result.cuts > 0) skin_positions(mount, matter, now);
+        const SurfaceSplit split = PathCut(mesh, now, mount, matter, path, insides, cut).run();
+        result.cuts += split.seam_edges > 0;
         result.open_parts += split.open_parts;
     }
     return result;

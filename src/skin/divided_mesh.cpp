@@ -59,7 +59,10 @@ double longest_edge(const TriMesh& mesh) {
     return longest;
 }
 
-TriMesh halve_edges(const TriMesh& mesh, double above) {
+}  // namespace
+
+TriMesh halve_edges(const TriMesh& mesh, const std::function<bool(int, int)>& is_long,
+                    std::vector<EdgeCut>& halved) {
     const int old = static_cast<int>(mesh.position.size());
     SurfaceSplit split;
     std::vector<Vec3> reference, position = mesh.position;
@@ -68,7 +71,7 @@ TriMesh halve_edges(const TriMesh& mesh, double above) {
                   [&](std::span<const EdgeUse> edge) {
                       const auto [low, high] = std::pair(edge[0].low, edge[0].high);
                       const Vec3 &from = mesh.position[low], &to = mesh.position[high];
-                      if ((to - from).norm() <= above) return;
+                      if (!is_long(low, high)) return;
                       const int at = old + static_cast<int>(split.cut.size());
                       split.cut.push_back({low, high, 0.5});
                       split.added.push_back({at, 0});
@@ -79,10 +82,9 @@ TriMesh halve_edges(const TriMesh& mesh, double above) {
     for (std::size_t t = 0; t < middle.size(); ++t) {
         split_triangle(mesh, static_cast<int>(t), middle[t], position, split);
     }
+    halved = split.cut;
     return apply_split(mesh, split, reference, std::vector<double>(reference.size(), 0.5));
 }
-
-}  // namespace
 
 TriMesh divide_edges(const TriMesh& mesh, double longest) {
     TriMesh divided = mesh;
@@ -90,7 +92,12 @@ TriMesh divide_edges(const TriMesh& mesh, double longest) {
     double before = std::numeric_limits<double>::infinity();
     for (double most = longest_edge(divided); most > longest && most < kShorter * before;
          most = longest_edge(divided)) {
-        divided = halve_edges(divided, std::max(longest, kNearLongest * most));
+        const double above = std::max(longest, kNearLongest * most);
+        const auto is_long = [&](int low, int high) {
+            return (divided.position[high] - divided.position[low]).norm() > above;
+        };
+        std::vector<EdgeCut> halved;
+        divided = halve_edges(divided, is_long, halved);
         before = most;
     }
     return divided;

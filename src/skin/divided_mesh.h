@@ -3,7 +3,10 @@
 // faces, could not follow its matter.
 #pragma once
 
+#include <functional>
+
 #include "geometry/trimesh.h"
+#include "skin/surface_split.h"
 
 namespace swage {
 
@@ -12,5 +15,10 @@ namespace swage {
 // coordinates, smoothing, colours, materials, parts) goes on linearly. Old vertices keep their
 // numbers, and a mesh without such edges is left as it is.
 TriMesh divide_edges(const TriMesh& mesh, double longest);
+
+// Halves those edges, of which the lower vertex comes first, at once. `halved`: what each new
+// vertex halves, in their order. Its smooth groups are to have their normals.
+TriMesh halve_edges(const TriMesh& mesh, const std::function<bool(int, int)>& is_long,
+                    std::vector<EdgeCut>& halved);
 
 }  // namespace swage

@@ -12,17 +12,17 @@ void Insides::add(TriMesh surface, SurfaceMaterial look) {
     look_.push_back(std::move(look));
 }
 
-std::vector<std::array<Vec2, 2>> Insides::lines_in(const SweepPlane& plane) const {
+std::vector<std::array<Vec2, 2>> Insides::lines_in(const BladePath& path) const {
     std::vector<std::array<Vec2, 2>> lines;
     for (const TriMesh& surface : surface_) {
         std::vector<double> height;
-        for (const Vec3& p : surface.position) height.push_back(plane.height(p));
+        for (const Vec3& p : surface.position) height.push_back(path.height(p));
         // From the lower number, so that two triangles have the same to the bit.
         const auto crossing = [&](int a, int b) -> Vec2 {
             if (a > b) std::swap(a, b);
             const double share = height[a] / (height[a] - height[b]);
             const Vec3 &low = surface.position[a], &high = surface.position[b];
-            return plane.flat(low + share * (high - low));
+            return path.flat(low + share * (high - low));
         };
         for (const Corners& t : surface.triangle) {
             std::array<Vec2, 2> line;

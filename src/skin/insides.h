@@ -7,7 +7,7 @@
 
 #include "geometry/triangle_tree.h"
 #include "geometry/trimesh.h"
-#include "skin/sweep_plane.h"
+#include "skin/blade_path.h"
 
 namespace swage {
 
@@ -20,8 +20,8 @@ class Insides {
     bool empty() const { return surface_.empty(); }
     const SurfaceMaterial& look(int number) const { return look_[number]; }
 
-    // Where they all meet a plane, whether one blade reaches it or not.
-    std::vector<std::array<Vec2, 2>> lines_in(const SweepPlane& plane) const;
+    // Where they all meet a path, whether one blade reaches it or not.
+    std::vector<std::array<Vec2, 2>> lines_in(const BladePath& path) const;
     // The number, from 0, of what lies at a point; -1: the body itself.
     int at(const Vec3& point) const;
 

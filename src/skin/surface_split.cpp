@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cut is settled first, in the plane: every edge of the section that borders a kept cap
+// The cut is settled first, on the path: every edge of the section that borders a kept cap
 // triangle is a seam. Then corners are joined (skin/join_sides.h).
 #include "skin/surface_split.h"
 
@@ -21,9 +21,9 @@ namespace swage {
 
 namespace {
 
-// A vertex nearer to the plane than this share of its shortest edge counts as lying on it, so that
+// A vertex nearer to the path than this share of its shortest edge counts as lying on it, so that
 // no slivers are cut off.
-constexpr double kOnPlane = 0.01;
+constexpr double kOnPath = 0.01;
 // Spacings, within which lines on the section are drawn to what is there.
 constexpr double kDrawn = 0.02;
 
@@ -42,14 +42,14 @@ struct Seam {
 
 class Splitter {
   public:
-    Splitter(const TriMesh& mesh, const std::vector<Vec3>& position, const SweepPlane& plane,
+    Splitter(const TriMesh& mesh, const std::vector<Vec3>& position, const BladePath& path,
              double spacing, const Insides& insides)
         : mesh_(mesh),
           position_(position),
-          plane_(plane),
+          path_(path),
           spacing_(spacing),
           insides_(insides),
-          line_(insides.lines_in(plane)) {}
+          line_(insides.lines_in(path)) {}
 
     SurfaceSplit run() {
         classify();
@@ -66,7 +66,7 @@ class Splitter {
 
   private:
     int old_count() const { return static_cast<int>(position_.size()); }
-    bool on_plane(int raw) const { return raw >= old_count() || sign_[raw] == 0; }
+    bool on_path(int raw) const { return raw >= old_count() || sign_[raw] == 0; }
     Vec3 place(int raw, const std::vector<Vec3>& position) const {
         if (raw < old_count()) return position[raw];
         const EdgeCut& cut = split_.cut[raw - old_count()];
@@ -75,7 +75,7 @@ class Splitter {
     Vec3 place(int raw) const { return place(raw, position_); }
     Vec2 flat(int raw) const {
         const int inner = raw - old_count() - static_cast<int>(split_.cut.size());
-        return plane_.flat(inner < 0 ? place(raw) : split_.cap_point[inner]);
+        return path_.flat(inner < 0 ? place(raw) : split_.cap_point[inner]);
     }
 
     void classify() {
@@ -91,8 +91,8 @@ class Splitter {
         height_.resize(position_.size());
         sign_.resize(position_.size());
         for (std::size_t v = 0; v < position_.size(); ++v) {
-            height_[v] = plane_.height(position_[v]);
-            sign_[v] = std::abs(height_[v]) <= kOnPlane * shortest[v] ? 0 : height_[v] > 0 ? 1 : -1;
+            height_[v] = path_.height(position_[v]);
+            sign_[v] = std::abs(height_[v]) <= kOnPath * shortest[v] ? 0 : height_[v] > 0 ? 1 : -1;
         }
         for (const Corners& t : mesh_.triangle) {
             for (int k = 0; k < 3; ++k) {
@@ -115,11 +115,11 @@ class Splitter {
             high = std::max(high, sign_[r]);
         }
         if (low || high) return low + high;
-        // It lies in the plane: the body is behind it.
+        // It lies on the path: the body is behind it.
         const Corners& t = mesh_.triangle[parent];
         const Vec3 out =
             (position_[t[1]] - position_[t[0]]).cross(position_[t[2]] - position_[t[0]]);
-        return out.dot(plane_.normal) > 0 ? -1 : 1;
+        return out.dot(path_.rise(position_[t[0]])) > 0 ? -1 : 1;
     }
 
     // The parts of a triangle, cut at those of its cut points that are in use.
@@ -181,12 +181,12 @@ class Splitter {
         f(Part{raw, side_of(raw, parent), is_split});
     }
 
-    bool touches_plane(int t) const {
+    bool touches_path(int t) const {
         const Corners& c = mesh_.triangle[t];
         return !(sign_[c[0]] == sign_[c[1]] && sign_[c[1]] == sign_[c[2]] && sign_[c[0]] != 0);
     }
 
-    // Edges in the plane between a part above and a part below.
+    // Edges on the path between a part above and a part below.
     void find_section() {
         struct Uses {
             int net = 0, plus = -1;
@@ -194,11 +194,11 @@ class Splitter {
         };
         std::map<Ends, Uses> edges;
         for (int t = 0; t < static_cast<int>(mesh_.triangle.size()); ++t) {
-            if (!touches_plane(t)) continue;
+            if (!touches_path(t)) continue;
             for_each_part(t, [&](const Part& part) {
                 for (int k = 0; k < 3; ++k) {
                     const int a = part.raw[k], b = part.raw[(k + 1) % 3];
-                    if (!on_plane(a) || !on_plane(b)) continue;
+                    if (!on_path(a) || !on_path(b)) continue;
                     Uses& uses = edges[ends(a, b)];
                     if (part.side > 0) {
                         uses.net += a < b ? 1 : -1;
@@ -214,8 +214,7 @@ class Splitter {
             const auto [a, b] = edge;
             if (std::abs(uses.net) == 1) {
                 seam_.push_back(uses.net > 0 ? Seam{a, b, uses.plus} : Seam{b, a, uses.plus});
-            } else if (uses.net == 0 && uses.plus >= 0 &&
-                       plane_.covers(0.5 * (flat(a) + flat(b)))) {
+            } else if (uses.net == 0 && uses.plus >= 0 && path_.covers(0.5 * (flat(a) + flat(b)))) {
                 wall_.push_back(edge);
             }
         }
@@ -234,7 +233,7 @@ class Splitter {
             ++split_.open_parts;
             for (int s : sheet) {
                 const Vec3 middle = 0.5 * (place(seam_[s].from) + place(seam_[s].to));
-                seam_[s].kept = plane_.covers(plane_.flat(middle));
+                seam_[s].kept = path_.covers(path_.flat(middle));
             }
         }
     }
@@ -246,7 +245,7 @@ class Splitter {
             const auto [at, fresh] = local.emplace(r, static_cast<int>(raw.size()));
             if (fresh) {
                 raw.push_back(r);
-                section.point.push_back(plane_.flat(place(r)));
+                section.point.push_back(path_.flat(place(r)));
                 section.at_rest.push_back(place(r, mesh_.position));
             }
             return at->second;
@@ -265,7 +264,7 @@ class Splitter {
             if (!without) return false;
             section = std::move(*without);
         }
-        for (const auto& [a, b] : plane_.outline) {
+        for (const auto& [a, b] : path_.outline) {
             const int steps =
                 std::clamp(static_cast<int>((b - a).norm() / (0.5 * spacing_)), 1, 999);
             for (int n = 0; n < steps; ++n) section.wish.push_back(a + (b - a) * n / steps);
@@ -291,7 +290,7 @@ class Splitter {
         raw.resize(point.size(), -1);
         for (const Corners& t : filled->triangle) {
             const Vec2 middle = point[t[0]] / 3 + point[t[1]] / 3 + point[t[2]] / 3;
-            if (!plane_.covers(middle)) continue;
+            if (!path_.covers(middle)) continue;
             Corners cap;
             for (int k = 0; k < 3; ++k) {
                 int& id = raw[t[k]];
@@ -307,13 +306,13 @@ class Splitter {
             }
             cap_.triangle.push_back(cap);
             cap_.neighbor.push_back(neighbor);
-            cap_.inside.push_back(insides_.at(plane_.world(middle)));
+            cap_.inside.push_back(insides_.at(path_.world(middle)));
         }
         return true;
     }
 
     int add_cap_point(const Vec2& at) {
-        split_.cap_point.push_back(plane_.world(at));
+        split_.cap_point.push_back(path_.world(at));
         return old_count() + static_cast<int>(split_.cut.size() + split_.cap_point.size()) - 1;
     }
 
@@ -432,7 +431,7 @@ class Splitter {
 
     const TriMesh& mesh_;
     const std::vector<Vec3>& position_;
-    const SweepPlane& plane_;
+    const BladePath& path_;
     const double spacing_;
     const Insides& insides_;
     const std::vector<std::array<Vec2, 2>> line_;  // of theirs
@@ -451,8 +450,8 @@ class Splitter {
 }  // namespace
 
 SurfaceSplit split_surface(const TriMesh& mesh, const std::vector<Vec3>& position,
-                           const SweepPlane& plane, double spacing, const Insides& insides) {
-    return Splitter(mesh, position, plane, spacing, insides).run();
+                           const BladePath& path, double spacing, const Insides& insides) {
+    return Splitter(mesh, position, path, spacing, insides).run();
 }
 
 }  // namespace swage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Splits the triangles of a surface along the swept part of a plane and closes both sides with
+// Splits the triangles of a surface along the swept part of a blade's path and closes both sides with
 // caps. Only who is whose corner is settled here; places and attributes are the caller's.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 #include "geometry/trimesh.h"
 #include "skin/insides.h"
-#include "skin/sweep_plane.h"
+#include "skin/blade_path.h"
 
 namespace swage {
 
@@ -29,7 +29,7 @@ struct SplitTriangle {
     Corners raw;        // where each comes from: old vertex, then cut point, then cap point
     int parent;         // old triangle; -1 for a cap
     bool split;         // the parent was cut
-    int side;           // of the plane, +1 or -1; 0 if it lies on both
+    int side;           // of the path, +1 or -1; 0 if it lies on both
     int neighbor = -1;  // of a cap: an old triangle at its rim
     int inside = -1;    // of a cap: which of the Insides it shows
 };
@@ -41,7 +41,7 @@ struct SplitVertex {
 
 struct SurfaceSplit {
     std::vector<EdgeCut> cut;
-    std::vector<Vec3> cap_point;  // [m], inside the body or on its rim, on the plane
+    std::vector<Vec3> cap_point;  // [m], inside the body or on its rim, on the path
     std::map<int, RimPoint> rim;  // of those, by what they are raw
     std::vector<SplitTriangle> triangle;
     // Vertices beyond the old ones, and the side of every old one that the cut runs through.
@@ -52,8 +52,8 @@ struct SurfaceSplit {
 };
 
 // `position`: of the mesh's vertices now [m]. `spacing`: of the points inside the caps [m], whose
-// edges follow what `insides` meet of the plane.
+// edges follow what `insides` meet of the path.
 SurfaceSplit split_surface(const TriMesh& mesh, const std::vector<Vec3>& position,
-                           const SweepPlane& plane, double spacing, const Insides& insides = {});
+                           const BladePath& path, double spacing, const Insides& insides = {});
 
 }  // namespace swage

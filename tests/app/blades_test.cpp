@@ -66,7 +66,7 @@ TEST_CASE("a blade cuts a body as it lies when that blade comes, not as it lay f
     const Outcome outcome = run_swage({"run", "scene.toml", "--no-render", "--out", "out"}, folder);
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
-    CHECK(!says(outcome.err, "bends or turns"));  // the other, which stands meanwhile
+    CHECK(!says(outcome.err, "turns back"));  // the other, which stands meanwhile
     const std::vector<double> volume = part_volumes(folder / "out/meshes/1-two.obj");
     REQUIRE(volume.size() == 3);
     // 2.7 cm above its middle, and what is 3.1 cm high.

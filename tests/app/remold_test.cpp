@@ -60,7 +60,7 @@ TEST_CASE("a stage that cannot mold an inset anew says which it is, and why") {
              "to = [\"-0.4*length\", \"height\", \"width\"]\n"
              "[[blade]]\nname = \"blade\"\nedge = [[\"0\", \"height\", \"-2*width\"], "
              "[\"0\", \"height\", \"2*width\"]]\n[blade.motion]\n"
-             "move = [\"height*ramp(t, 0.5, 1)\", \"-2*height*t\", \"0\"]\n");
+             "move = [\"0.3*height*t\", \"-1.2*height*(1 - abs(2*t - 1))\", \"0\"]\n");
     const fs::path scene = put_scene(
         scratch.path(),
         kMesh + metal("") + kBoundary + "[[inset]]\n" + kAluminium + kCore +
@@ -69,6 +69,6 @@ TEST_CASE("a stage that cannot mold an inset anew says which it is, and why") {
     const Outcome outcome = run(scene, scratch.path() / "run");
     INFO(outcome.err);
     CHECK(outcome.code == 6);
-    CHECK(outcome.err.find("draw: cannot mold anew: a blade's path bends or turns within inset 1, "
-                           "which cannot be cut along it") != std::string::npos);
+    CHECK(outcome.err.find("draw: cannot mold anew: a blade's path turns back over itself within "
+                           "inset 1, which cannot be cut along it") != std::string::npos);
 }

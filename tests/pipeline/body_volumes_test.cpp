@@ -87,7 +87,7 @@ TEST_CASE("the skin of what has flowed goes on from where it was as a blade or a
     }
     SECTION("its skin cut first") {
         const Vec3 low(0.001, -1, -1), high(0.001, 1, -1), up(0, 0, 2);
-        CHECK(cut_skins(piece, {{low, high, high + up}, {low, high + up, low + up}}).planes == 1);
+        CHECK(cut_skins(piece, {{low, high, high + up}, {low, high + up, low + up}}).cuts == 1);
         follow_matter(piece);
         for (const Vec3& p : before) {  // its vertices stay, and others lie between them
             double least = 1;

@@ -213,8 +213,8 @@ TEST_CASE("what broke through its insets is molded anew with them") {
     check_masses(piece.matter, anew.matter);
 }
 
-TEST_CASE("an inset that a bent path has cut is not molded anew, and one beside it is") {
-    const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, 1, -1), up(0, 0, 2);
+TEST_CASE("an inset that a folded path has cut is not molded anew, and one beside it is") {
+    const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, -1, -1), up(0, 0, 2);
     const std::vector<std::array<Vec3, 3>> bent = {
         {a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}};
     const auto anew_of = [&](const InsetSpec& inset) {
@@ -225,9 +225,39 @@ TEST_CASE("an inset that a bent path has cut is not molded anew, and one beside 
     };
     CHECK_THROWS_WITH(
         anew_of(core()),
-        "cannot mold anew: a blade's path bends or turns within inset 1, which cannot "
-        "be cut along it");
+        "cannot mold anew: a blade's path turns back over itself within inset 1, which cannot be "
+        "cut along it");
     CHECK_NOTHROW(anew_of(box_inset({0.8, 0.2, 0.2}, {1, 0.8, 0.8})));
+}
+
+TEST_CASE("an inset that a bent path has cut keeps its volume in what is molded anew") {
+    const BodySpec body = body_of({core()}, 6);
+    WorkPiece piece = make(body);
+    Aggregate& m = piece.matter;
+    const auto edge = [](double y) { return 0.0137 + 0.3 * std::abs(y); };
+    const Vec3 a(edge(-1), -1, -1), b(edge(0), 0, -1), c(edge(1), 1, -1), up(0, 0, 2);
+    const CutResult cut = cut_skins(
+        piece, {{a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}, {b, c + up, b + up}});
+    CHECK(!cut.has_folded);
+    CHECK(cut.open_parts == 0);
+    const auto is_beyond = [&](ParticleId p) {
+        const Vec3 at = m.particle_reference.at(p) - m.lattice.spacing * Vec3(1.3e-6, 1.7e-6, 9e-7);
+        return at.x() > edge(at.y());
+    };
+    for (const Span& span : m.lattice.span) {
+        for (int n = 0; n < span.count; ++n) {
+            if (is_beyond(span.lower + n) == is_beyond(span.upper + n)) continue;
+            m.connection[span.direction].weight.set(span.lower + n, 0);
+        }
+    }
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        if (is_beyond(static_cast<ParticleId>(p))) m.particle_position.add(p, {0.4, 0, 0});
+    }
+    show_matter(piece, true);
+    CHECK(test::is_closed(piece.skin));
+    const WorkPiece anew = mold_anew(piece, body, {});
+    CHECK(material_volumes(anew.matter)[1] == Approx(volume_of(core())).epsilon(1e-3));
+    check_masses(piece.matter, anew.matter);
 }
 
 TEST_CASE("each material's flow, by its mass, stays as much in what was bent and is molded anew") {

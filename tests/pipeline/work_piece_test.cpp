@@ -404,9 +404,9 @@ TEST_CASE("triangles that a blade tore stay away when the body breaks on, in any
     break_at(m, -0.09);
     show_matter(piece, true);
     REQUIRE(piece.whole_skin);
-    // A path with a bend, and one half drawn away from the other.
-    const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, 1, -1), up(0, 0, 2);
-    CHECK(cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}}).has_curved);
+    // A path that turns back, and one half drawn away from the other.
+    const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, -1, -1), up(0, 0, 2);
+    CHECK(cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}}).has_folded);
     test::sever_plane(m, {0.01, 0, 0}, Vec3::UnitX());
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         if (m.particle_reference.at(p).x() > 0.01) m.particle_position.add(p, {1, 0, 0});
@@ -488,10 +488,10 @@ TEST_CASE("a boundary that a blade has cut is made anew once its matter breaks")
     CHECK(test::is_closed(piece.skin));
 }
 
-TEST_CASE("a boundary is closed where a blade's path bends, and no warning says otherwise") {
+TEST_CASE("a boundary is closed where a blade's path folds, and no warning says otherwise") {
     WorkPiece piece = block({}, SkinKind::boundary);
-    const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, 1, -1), up(0, 0, 2);
-    CHECK(!cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}}).has_curved);
+    const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, -1, -1), up(0, 0, 2);
+    CHECK(!cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}}).has_folded);
     test::sever_plane(piece.matter, {0.01, 0, 0}, Vec3::UnitX());
     show_matter(piece, true);
     CHECK(test::is_closed(piece.skin));

@@ -63,7 +63,7 @@ struct BrokenFixture {
         const CutResult result =
             cut_skin(mesh, mesh.position, mount, matter,
                      {{at(low, -1), at(1, -1), at(1, 1)}, {at(low, -1), at(1, 1), at(low, 1)}});
-        CHECK(result.planes == 1);
+        CHECK(result.cuts == 1);
         CHECK(result.open_parts == 0);
     }
     void break_it(double roughness = 0) { broken = break_skin(mesh, mount, matter, roughness); }

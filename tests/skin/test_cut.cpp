@@ -33,7 +33,7 @@ TEST_CASE("a cut through gives closed halves whose volumes add up to the whole")
     Fixture f(bar(hollow));
     const double whole = signed_volume(f.mesh);
     const CutResult result = f.cut(sweep_of(point, normal.normalized(), 3));
-    CHECK(result.planes == 1);
+    CHECK(result.cuts == 1);
     CHECK(result.open_parts == 0);
     CHECK(cap_triangles(f.mesh) > 0);
     check_sound(f.mesh, f.position);
@@ -171,7 +171,7 @@ TEST_CASE("a body that has gone into itself is closed where it is cut, each part
     f.follow();
     const Vec3 point(.0013, 0, 0), normal = Vec3::UnitX();
     const CutResult result = f.cut(sweep_of(point, normal, 3));
-    CHECK(result.planes == 1);
+    CHECK(result.cuts == 1);
     CHECK(result.open_parts == 0);
     check_sound(f.mesh, f.position);
     const std::vector<TriMesh> parts = parts_of(f.mesh);
@@ -289,20 +289,20 @@ TEST_CASE("a blade that cuts, draws back, goes aside in the air and cuts again c
         sweep.insert(sweep.end(), leg.begin(), leg.end());
     }
     const CutResult result = f.cut(sweep);
-    CHECK_FALSE(result.has_curved);
-    CHECK(result.planes == 2);
+    CHECK_FALSE(result.has_folded);
+    CHECK(result.cuts == 2);
     CHECK(result.open_parts == 0);
     check_sound(f.mesh, f.position);
     CHECK(parts_of(f.mesh).size() == 3);
     CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
 }
 
-TEST_CASE("after a curved sweep, triangles between two pieces are taken out") {
+TEST_CASE("after a sweep that folds, triangles between two pieces are taken out") {
     Fixture f(bar());
-    const Vec3 a(0, -1, -1), b(0, 0, -1), c(.2, 1, -1), up(0, 0, 2);
+    const Vec3 a(0, -1, -1), b(0, 0, -1), c(.2, -1, -1), up(0, 0, 2);
     const CutResult result = f.cut({{a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}});
-    CHECK(result.has_curved);
-    CHECK(result.planes == 0);
+    CHECK(result.has_folded);
+    CHECK(result.cuts == 0);
     test::sever_plane(f.matter, {.0137, 0, 0}, Vec3::UnitX());
     const std::size_t before = f.mesh.triangle.size();
     remove_torn_triangles(f.mesh, f.mount, f.matter);
@@ -324,7 +324,7 @@ TEST_CASE("a chip thinner than the matter knows stays where it is cut from") {
     const double whole = signed_volume(f.mesh);
     // The foot reaches from x = .017 on: the cut leaves 3 mm of it, a cell being 50.
     const CutResult result = f.cut(sweep_of({.02, 0, 0}, Vec3::UnitX(), 3));
-    REQUIRE(result.planes == 1);
+    REQUIRE(result.cuts == 1);
     test::sever_plane(f.matter, {.02, 0, 0}, Vec3::UnitX());
     for (std::size_t p = 0; p < f.matter.particle_count(); ++p) {
         if (f.matter.particle_reference.at(p).x() > .02) {

@@ -65,7 +65,7 @@ TEST_CASE("what lies on either side of a blade in a gap follows its own side") {
             const double at = from + share * (to - from);
             CAPTURE(from, to, at);
             Fixture f(boxes_along({{-.5, from}, {to, .5}}, {1, 1, 1}));
-            CHECK(f.cut(sweep_of({at, 0, 0}, Vec3::UnitX(), 3)).planes == 0);
+            CHECK(f.cut(sweep_of({at, 0, 0}, Vec3::UnitX(), 3)).cuts == 0);
             test::sever_plane(f.matter, {at, 0, 0}, Vec3::UnitX());
             REQUIRE(find_pieces(f.matter).count == 2);
             CHECK(most_stretched(f) < 1e-12);
@@ -80,7 +80,7 @@ TEST_CASE("a plate whose faces lie in the middle of cells goes from between two 
         Fixture f(boxes_along({{-.5, low - .01}, {low, high}, {high + .01, .5}}, {1, 2, 2}));
         Sweep both = sweep_of({low - .005, 0, 0}, Vec3::UnitX(), 3);
         for (const auto& t : sweep_of({high + .005, 0, 0}, Vec3::UnitX(), 3.1)) both.push_back(t);
-        CHECK(f.cut(both).planes == 0);
+        CHECK(f.cut(both).cuts == 0);
         for (const double x : {low - .005, high + .005}) {
             test::sever_plane(f.matter, {x, 0, 0}, Vec3::UnitX());
         }
@@ -128,7 +128,7 @@ TEST_CASE("a part that a blade reaches only by the cells it shares stays in one 
     add_box(mesh, {-.2, -.145, -.15}, {.03, -.11, .15}, {3, 1, 1});
     Fixture f(std::move(mesh));
     const Vec3 a(.0137, -.105, -1), b(.0137, -.105, 1), c(.0137, 1, 1), d(.0137, 1, -1);
-    CHECK(f.cut({{a, b, c}, {a, c, d}}).planes == 1);
+    CHECK(f.cut({{a, b, c}, {a, c, d}}).cuts == 1);
     test::sever_plane(f.matter, {.0137, 0, 0}, Vec3::UnitX());
     follow_one_piece(f.mesh, f.mount, f.matter);
     f.follow();

@@ -212,7 +212,7 @@ TEST_CASE("blades that cross within a core each show it") {
     Sweep both = sweep_of({.0137, 0, 0}, Vec3::UnitX(), 3);
     for (const auto& t : sweep_of({0, .0123, 0}, Vec3::UnitY(), 3)) both.push_back(t);
     const double whole = signed_volume(f.mesh);
-    CHECK(f.cut(both, one(cylinder(-0.7, 0.7))).planes == 2);
+    CHECK(f.cut(both, one(cylinder(-0.7, 0.7))).cuts == 2);
     check_sound(f.mesh, f.position);
     CHECK(parts_of(f.mesh).size() == 4);
     CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));

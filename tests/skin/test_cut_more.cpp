@@ -65,7 +65,7 @@ TEST_CASE("a blade that stops inside the body leaves the surface in one piece") 
     // From above down to y = 0.0161, through the whole depth.
     const Vec3 a(0.0137, .0161, -1), b(0.0137, .0161, 1), c(0.0137, 1, 1), d(0.0137, 1, -1);
     const CutResult result = f.cut({{a, b, c}, {a, c, d}});
-    CHECK(result.planes == 1);
+    CHECK(result.cuts == 1);
     CHECK(cap_triangles(f.mesh) > 0);
     CHECK(parts_of(f.mesh).size() == 1);
     CHECK(test::is_closed(f.mesh));
@@ -158,7 +158,7 @@ TEST_CASE("two blades cut four closed parts out of a bar") {
         both.push_back(t);
     }
     const CutResult result = f.cut(both);
-    CHECK(result.planes == 2);
+    CHECK(result.cuts == 2);
     check_sound(f.mesh, f.position);
     const std::vector<TriMesh> parts = parts_of(f.mesh);
     CHECK(parts.size() == 4);
@@ -207,7 +207,7 @@ TEST_CASE("chips of several blades stay together with what the first of them is 
         if (is_left_first) std::swap(x[0], x[1]);
         Sweep both = sweep_of({x[0], 0, 0}, Vec3::UnitX(), 3);
         for (const auto& t : sweep_of({x[1], 0, 0}, Vec3::UnitX(), 3.3)) both.push_back(t);
-        REQUIRE(f.cut(both).planes == 2);
+        REQUIRE(f.cut(both).cuts == 2);
         REQUIRE(parts_of(f.mesh).size() == 6);
         const std::vector<Vec3> before = f.position;
         part_at(f, x);
@@ -220,7 +220,7 @@ TEST_CASE("chips of several blades stay together with what the first of them is 
 
 TEST_CASE("what is cut off thin but longer than a cell goes with its own side") {
     Fixture f(bar_with_rod(-.04, .2, .02));
-    REQUIRE(f.cut(sweep_of({.02, 0, 0}, Vec3::UnitX(), 3)).planes == 1);
+    REQUIRE(f.cut(sweep_of({.02, 0, 0}, Vec3::UnitX(), 3)).cuts == 1);
     const std::vector<Vec3> before = f.position;
     part_at(f, {.02});
     CHECK(most_torn(f.mesh, before, f.position) < 1e-12);

@@ -53,7 +53,7 @@ struct Fixture {
         const CutResult result =
             cut_skin(mesh, position, mount, matter,
                      {{at(-1, -1), at(1, -1), at(1, 1)}, {at(-1, -1), at(1, 1), at(-1, 1)}});
-        CHECK(result.planes == 1);
+        CHECK(result.cuts == 1);
         follow();
     }
 };

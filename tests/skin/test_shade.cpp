@@ -55,7 +55,7 @@ TEST_CASE("what is left of a surface shades as before, diced, cut or broken") {
     SECTION("cut, and cut again") {
         for (const Vec3& normal : {Vec3(1, .3, .2), Vec3(-.2, 1, .4)}) {
             sever_plane(f.matter, Vec3(.02, .01, 0), normal.normalized());
-            REQUIRE(f.cut(sweep_of({.02, .01, 0}, normal.normalized(), 3)).planes == 1);
+            REQUIRE(f.cut(sweep_of({.02, .01, 0}, normal.normalized(), 3)).cuts == 1);
             CHECK(worst_shade(f.mesh, whole) < 1e-6);
         }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "skin/sweep_plane.h"
+#include "skin/blade_path.h"
 
 #include "tests/catch.h"
 
@@ -12,7 +12,7 @@ TEST_CASE("what a blade sweeps forth and back lies in one plane, with one outlin
                                                     {at(0, 0), at(1, 1), at(0, 1)},
                                                     {at(1, 0), at(2, 1), at(2, 0)},
                                                     {at(1, 0), at(1, 1), at(2, 1)}};
-    const auto plane = fit_sweep_plane(sweep, 1e-9);
+    const auto plane = flat_path(sweep, 1e-9);
     REQUIRE(plane);
     CHECK(std::abs(plane->normal.z()) == Approx(1));
     CHECK((plane->point - Vec3(1, 0.5, 0.5)).norm() < 1e-12);
@@ -44,8 +44,8 @@ TEST_CASE("a blade at rest beside what another cuts has no path that bends") {
                              strip(Vec3(0.6, 0, 0), Vec3(0.5, 1, 2), Vec3::Zero())}) {
         sweep.insert(sweep.end(), more.begin(), more.end());
     }
-    const SweepPlanes found = sweep_planes(sweep, box, 1e-9);
-    REQUIRE(found.plane.size() == 1);
-    CHECK(std::abs(found.plane[0].normal.x()) == Approx(1));
-    CHECK(!found.has_curved);
+    const BladePaths found = blade_paths(sweep, box, 1e-9);
+    REQUIRE(found.path.size() == 1);
+    CHECK(std::abs(found.path[0].normal.x()) == Approx(1));
+    CHECK(!found.has_folded);
 }
