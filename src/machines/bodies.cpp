@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kNutSides = 6;
 constexpr int kRodSides = 24;
+constexpr double kSmooth = 0.87;  // the cosine of the turn from which an edge has a corner
 
 void append(TriMesh& mesh, const TriMesh& part, const Pose& mesh_from_part) {
     const int positions = static_cast<int>(mesh.position.size());
@@ -108,10 +109,20 @@ TriMesh clamp_around(const Box& held, double clearance) {
 
 TriMesh blade_behind(const std::vector<Vec3>& edge, const Vec3& back, double height,
                      double thickness) {
-    const Vec3 along = (edge.back() - edge.front()).normalized();
+    const bool is_closed = edge.front() == edge.back();
+    const int count = static_cast<int>(edge.size()) - is_closed;
+    const Vec3 along = is_closed ? Vec3::Zero() : Vec3((edge.back() - edge.front()).normalized());
     Vec3 up = back - back.dot(along) * along;
     up = up.norm() > 1e-9 * back.norm() ? up.normalized() : across(along);
     const Vec3 side = up.cross(along);
+    // Where the edge bends, the plate does.
+    const auto at = [&](int n) -> const Vec3& {
+        return edge[is_closed ? (n + count) % count : std::clamp(n, 0, count - 1)];
+    };
+    const auto side_at = [&](int n) -> Vec3 {
+        const Vec3 own = up.cross(at(n + 1) - at(n - 1));
+        return count > 2 && own.norm() > 0 ? own.normalized() : side;
+    };
 
     // The plate's section, from the edge around, seen against `along`: (side, up).
     const double ground = std::min(4 * thickness, 0.4 * height);
@@ -122,18 +133,36 @@ TriMesh blade_behind(const std::vector<Vec3>& edge, const Vec3& back, double hei
                                        {-0.5 * thickness, ground}};
     const int corners = static_cast<int>(section.size());
     TriMesh body;
-    for (const Vec3& point : edge) {
+    for (int n = 0; n < count; ++n) {
+        const Vec3 own = side_at(n);
         for (const Vec2& s : section) {
-            body.position.push_back(point + s.x() * side + s.y() * up);
+            body.position.push_back(edge[n] + s.x() * own + s.y() * up);
         }
     }
-    const int last = static_cast<int>(edge.size() - 1) * corners;
-    for (int row = 0; row < last; row += corners) {
+    // A corner of a face shares its normal with the one before it along the edge, where that does
+    // not turn sharply: two groups a corner of each row, one a face of the section.
+    const auto group_of = [&](int n, int c, bool is_next, bool is_far) {
+        const Vec3 before = at(n) - at(n - 1), after = at(n + 1) - at(n);
+        const bool is_sharp = before.dot(after) < kSmooth * before.norm() * after.norm();
+        const int own = ((n % count) * corners + c) * 2 + is_next;
+        return own + (is_sharp && is_far ? 2 * count * corners : 0);
+    };
+    body.smooth_group_count = 4 * count * corners;
+    const int faces = is_closed ? count : count - 1;
+    for (int n = 0; n < faces; ++n) {
+        const int row = n * corners, beyond = (n + 1) % count * corners;
         for (int c = 0; c < corners; ++c) {
             const int next = (c + 1) % corners;
-            append_flat(body, {row + c, row + next, row + corners + next, row + corners + c});
+            body.triangle.push_back({row + c, row + next, beyond + next});
+            body.triangle.push_back({row + c, beyond + next, beyond + c});
+            const int a = group_of(n, c, false, false), b = group_of(n, c, true, false);
+            const int d = group_of(n + 1, c, true, true), e = group_of(n + 1, c, false, true);
+            body.triangle_smooth.push_back({a, b, d});
+            body.triangle_smooth.push_back({a, d, e});
         }
     }
+    if (is_closed) return body;
+    const int last = (count - 1) * corners;
     append_flat(body, {0, 4, 3, 2, 1});
     append_flat(body, {last, last + 1, last + 2, last + 3, last + 4});
 

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "geometry/distance_field.h"
 #include "geometry/mesh_read.h"
+#include "machines/blade_edge.h"
 #include "machines/bodies.h"
 #include "machines/load_name.h"
 #include "machines/parameters.h"
@@ -276,14 +277,7 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
 }
 
 void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) {
-    std::vector<Vec3> edge;
-    for (const Expression3& point : spec.edge) edge.push_back(length3(setting, point));
-    if (edge.size() < 2 || (edge.back() - edge.front()).norm() == 0) {
-        refuse(spec.edge.empty() ? Expression() : spec.edge[0][0],
-               fmt::format("the edge of blade {} {}", spec.name,
-                           edge.size() < 3 ? "needs at least two different points"
-                                           : "begins and ends at one point"));
-    }
+    const std::vector<Vec3> edge = edge_of(spec, setting.known);
     const std::string whose = "blade " + spec.name;
     const double thickness = positive(setting, spec.thickness, whose, "thickness");
     const Vec3 centre = box_of(edge).center();
@@ -291,13 +285,14 @@ void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) 
 
     // The plate stands behind the edge and is tall enough to show above what it has cut.
     const Vec3 start = pose_at(motion, whose, 0) * centre;
-    Vec3 travel = Vec3::Zero();
+    std::vector<Vec3> way;
     for (int n = 1; n <= kTravelSamples; ++n) {
         const double t = static_cast<double>(n) / kTravelSamples;
-        const Vec3 way = pose_at(motion, whose, t) * centre - start;
-        if (way.norm() > travel.norm()) travel = way;
+        way.push_back(pose_at(motion, whose, t) * centre - start);
     }
-    const double width = (edge.back() - edge.front()).norm();
+    const Vec3 travel = farthest_forth(way);
+    const bool is_closed = edge.front() == edge.back();
+    const double width = (is_closed ? box_of(edge).size() : edge.back() - edge.front()).norm();
     const bool moves = travel.norm() > kAtRest * setting.frame.size.norm();
     const Vec3 back = moves ? Vec3(-travel) : Vec3(0.5 * width * Vec3::UnitY());
 

@@ -113,7 +113,9 @@ struct GripSpec {
 
 struct BladeSpec {
     std::string name;
-    std::vector<Expression3> edge;         // in the work frame at the start
+    // In the work frame at the start. One alone is a curve: it sees `along`, 0 to 1.
+    std::vector<Expression3> edge;
+    int points = 33;                       // of a curve
     Expression thickness = "0.02*height";  // of the drawn body
     MotionSpec motion;
     Repetition repeat;

@@ -56,6 +56,12 @@ ExpressionReader ExpressionReader::repeated() const {
     return reader;
 }
 
+ExpressionReader ExpressionReader::curved() const {
+    ExpressionReader reader = *this;
+    reader.add_name(kAlong);
+    return reader;
+}
+
 namespace {
 
 std::string word_at(const std::string& text, std::size_t at) {

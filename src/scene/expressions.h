@@ -22,6 +22,7 @@ work_piece_names_told();  // and what each is
 
 inline const std::string kStop = "stop";      // what motions call it
 inline const std::string kNumber = "number";  // of a part that is repeated
+inline const std::string kAlong = "along";    // a blade's edge, 0 to 1
 
 class ExpressionReader {
   public:
@@ -37,6 +38,8 @@ class ExpressionReader {
     void explain(const std::string& name, const std::string& why) { unseen_[name] = why; }
     // One for a part that is repeated: it sees which one it is.
     ExpressionReader repeated() const;
+    // One for an edge that is a curve: it sees how far along it is.
+    ExpressionReader curved() const;
 
     // Look up a number or an expression; `into` keeps its text. Return whether the key is there.
     bool read(TableReader& table, const std::string& key, Expression& into);

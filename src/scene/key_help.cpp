@@ -388,7 +388,9 @@ constexpr KeyHelp kMachineKeys[] = {
 
     {"[[blade]]", "name", "letters, digits and _"},
     {"[[blade]]", "repeat", "as in [[tool]]"},
-    {"[[blade]]", "edge", "where the edge starts"},
+    {"[[blade]]", "edge",
+     "where the edge starts: its points, or a single one, a curve, that changes with `along`"},
+    {"[[blade]]", "points", "how many points stand for such a curve"},
     {"[[blade]]", "thickness", "thickness in pictures"},
     {"[[blade]]", "motion", "a section [blade.motion]: the keys of [tool.motion]", "section"},
 

@@ -132,6 +132,7 @@ SectionReference expression_reference() {
         "as t, except for blades: the t at which a limit ([[stage.limit]]) was reached, 1 until "
         "then; motion written with min(t, stop) ends there");
     add("number", "in a part with repeat, and in its motion: which one it is, from 1");
+    add("along", "in an edge that is a single point: how far along it is, 0 to 1");
     add("duration", "as t: duration of the stage, so that t*duration is the time within it");
     for (const FormulaFunction& f : formula_functions()) add(f.call, f.help);
     return all;

@@ -272,15 +272,23 @@ class MachineReader {
         machine.load.push_back(std::move(load));
     }
 
-    void read_blade(const Node& node, MachineSpec& machine) {
-        TableReader table(node, "[[blade]]", reading_);
-        BladeSpec blade;
-        ExpressionReader expression = read_repeat(table, blade.repeat);
-        blade.name = read_name(table, blade.repeat);
+    void read_edge(TableReader& table, ExpressionReader& expression, BladeSpec& blade) {
         table.describe("edge", "points, each [x, y, z] of expressions");
         const Node* edge = table.find("edge");
+        const bool is_curve =
+            edge != nullptr && edge->kind == Node::Kind::array && edge->item.size() == 3 &&
+            std::ranges::none_of(edge->item,
+                                 [](const Node& one) { return one.kind == Node::Kind::array; });
         if (edge == nullptr) {
             table.missing("edge", "at least two points, such as [[0, 0, -1], [0, 0, 1]]");
+        } else if (is_curve) {
+            ExpressionReader curved = expression.curved();
+            curved.read_item(table, "edge", *edge, Quantity::length, blade.edge.emplace_back());
+            expression.take_used(curved);
+            if (mistakes_.is_clean() && !curved.is_used(kAlong)) {
+                table.mistake("edge",
+                              "a single point is no edge: give two, or let it change with `along`");
+            }
         } else if (edge->kind != Node::Kind::array || edge->item.size() < 2) {
             table.mistake("edge", "edge must be at least two points, each of three numbers");
         } else {
@@ -288,10 +296,23 @@ class MachineReader {
                 blade.edge.emplace_back();
                 expression.read_item(table, "edge", point, Quantity::length, blade.edge.back());
             }
-            if (mistakes_.is_clean() && blade.edge.front() == blade.edge.back()) {
+            if (mistakes_.is_clean() && blade.edge.size() < 4 &&
+                blade.edge.front() == blade.edge.back()) {
                 table.mistake("edge", "edge begins and ends at the same point");
             }
         }
+        const bool says_points = table.whole("points", 2, 1000, blade.points);
+        if (says_points && edge != nullptr && !is_curve) {
+            table.warn("points", "points has no effect: this edge is given by its points");
+        }
+    }
+
+    void read_blade(const Node& node, MachineSpec& machine) {
+        TableReader table(node, "[[blade]]", reading_);
+        BladeSpec blade;
+        ExpressionReader expression = read_repeat(table, blade.repeat);
+        blade.name = read_name(table, blade.repeat);
+        read_edge(table, expression, blade);
         if (expression.read(table, "thickness", Quantity::length, blade.thickness)) {
             expression.expect_positive(table, "thickness");
         }

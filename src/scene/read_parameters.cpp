@@ -102,6 +102,8 @@ class ParametersReader {
             reason = "is the time at which a limit is reached";
         } else if (entry.key == kNumber) {
             reason = "is the number of a repeated part";
+        } else if (entry.key == kAlong) {
+            reason = "is the way along a blade's edge";
         } else if (is_work_piece_name(entry.key)) {
             reason = "is a variable of the work-piece";
         } else if (is_reserved_name(entry.key)) {
