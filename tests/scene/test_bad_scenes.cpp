@@ -428,10 +428,10 @@ TEST_CASE("names that cannot be found get the known ones, names that cannot be f
     check_all({
         {"machine",
          with(&Parts::stage, "[[stage]]\nmachine = \"bned\"\nangel = 3\n"),
-         {"8:11: there is no machine \"bned\", did you mean \"bend\"? Known: bend, cut, "}},
+         {"8:11: there is no machine \"bned\", did you mean \"bend\"? Known: bend, carve, core, cut, "}},
         {"no machine",
          with(&Parts::stage, "[[stage]]\nframes = 3\n"),
-         {"7:1: [[stage]] needs \"machine\": one of bend, cut"}},
+         {"7:1: [[stage]] needs \"machine\": one of bend, carve, core, cut"}},
         {"machine file",
          with(&Parts::stage, "[[stage]]\nmachine = \"mine/press.toml\"\n"),
          {"8:11: the machine file \"mine/press.toml\" does not exist (/tmp/"}},
