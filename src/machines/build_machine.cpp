@@ -217,6 +217,14 @@ Box box_between(const Setting& setting, const Expression3& from, const Expressio
     return {box.low - slack, box.high + slack};
 }
 
+// Whether two grips hold along different axes all the way, as planes of symmetry that meet do.
+bool are_apart(const GripSpec& one, const GripSpec& other) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (one.along[axis] && other.along[axis]) return false;
+    }
+    return one.motion.turn == "0" && other.motion.turn == "0";
+}
+
 // `regions`: of the grips before it.
 void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
               const GripSpec& spec, std::vector<Box>& regions) {
@@ -233,13 +241,15 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
         const double share = share_within(patch, region);
         if (share < kLeastShare) continue;
         for (std::size_t g = 0; g < regions.size(); ++g) {
+            if (are_apart(machine.spec.grip[g], spec)) continue;
             const Box both = {region.low.cwiseMax(regions[g].low),
                               region.high.cwiseMin(regions[g].high)};
             if (both.empty() || share_within(patch, both) <= kOverlap) continue;
-            refuse(
-                spec.from[0],
-                fmt::format("grips {} and {} would hold the same points; make one of them smaller",
-                            machine.apparatus.grip[g].name, spec.name));
+            refuse(spec.from[0],
+                   fmt::format(
+                       "grips {} and {} would hold the same points; make one of them smaller, or "
+                       "let them hold along different axes (along) without turning",
+                       machine.apparatus.grip[g].name, spec.name));
         }
         grip.point.push_back(static_cast<int>(p));
         grip.anchor.push_back(at);

@@ -380,7 +380,8 @@ constexpr KeyHelp kMachineKeys[] = {
     {"[[grip]]", "to", "the opposite corner", {}, "-"},
     {"[[grip]]",
      "along",
-     "axes along which it holds: xyz clamps, y acts as a smooth plane",
+     "axes along which it holds: xyz clamps, y acts as a smooth plane; grips that hold along "
+     "different axes, without turning, may share what they hold, as planes of symmetry do",
      {},
      "\"xyz\""},
     {"[[grip]]", "drawn", "false: no clamp is drawn around what it holds"},
