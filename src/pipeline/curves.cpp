@@ -49,6 +49,7 @@ struct LoadColumn {
     double (*value)(const LoadCurve& load, std::size_t row);
     bool is_of_axis = false;  // only of what turns about one
     bool is_work = false;
+    bool is_of_load = false;
 };
 template <int axis>
 double place(const LoadCurve& load, std::size_t row) {
@@ -68,6 +69,7 @@ constexpr LoadColumn kLoadColumns[] = {
     {"z [m]", place<2>},
     {"turn [rad]", value<&LoadCurve::turn>},
     {"travel [m]", value<&LoadCurve::travel>},
+    {"strength", value<&LoadCurve::strength>, false, false, true},
     {"force x [N]", part<&LoadCurve::force, 0>},
     {"force y [N]", part<&LoadCurve::force, 1>},
     {"force z [N]", part<&LoadCurve::force, 2>},
@@ -84,7 +86,9 @@ void for_columns(const LoadCurve& load, const Act& act) {
     for (const LoadColumn& column : kLoadColumns) {
         // Gravity's work is an entry of the books.
         const bool stands_twice = column.is_work && load.name == "gravity";
-        if (!stands_twice && (load.axis || !column.is_of_axis)) act(column);
+        const bool has =
+            (load.axis || !column.is_of_axis) && (!load.strength.empty() || !column.is_of_load);
+        if (!stands_twice && has) act(column);
     }
 }
 
@@ -150,6 +154,7 @@ StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<T
             load_.back().force.back() = start[n].force;
             load_.back().torque.back() = start[n].torque;
             load_.back().contacts.back() = start[n].contacts;
+            load_.back().strength = {start[n].strength};
         }
         way_.push_back({start[n].pose});
     }
@@ -194,6 +199,7 @@ void StageCurves::add(int frame, const FrameReport& report, const std::vector<Pr
         load.work.back() = felt.work;
         load.penetration.back() = felt.penetration;
         load.contacts.back() = felt.contacts;
+        if (!load.strength.empty()) load.strength.push_back(felt.strength);
     }
 }
 

@@ -31,11 +31,13 @@ struct LoadCurve {
     std::vector<double> work;         // [J] done on the matter
     std::vector<double> penetration;  // [m]
     std::vector<double> contacts;
+    std::vector<double> strength;  // of a load, 1 being full; of a part of the machine empty
 
     template <typename Io>
     void visit(Io& io) {
-        auto& [of, at, turned, path, way, pushes, turns, about, axial, done, deep, points] = *this;
-        io(of, at, turned, path, way, pushes, turns, about, axial, done, deep, points);
+        auto& [of, at, turned, path, way, pushes, turns, about, axial, done, deep, points, share] =
+            *this;
+        io(of, at, turned, path, way, pushes, turns, about, axial, done, deep, points, share);
     }
 };
 

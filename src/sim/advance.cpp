@@ -173,6 +173,7 @@ std::vector<ToolLoad> Simulation::Rooms::loads(const Drive& now,
         load.jump = pushes[n].jump;
         load.force = pushes[n].force;
         load.torque = pushes[n].torque;
+        load.strength = n < apparatus.load.size() ? now.load_strength[n] : now.gravity_strength;
         if (n < apparatus.load.size()) {
             load.contacts = static_cast<int>(apparatus.load[n].point.size());
         }

@@ -25,13 +25,14 @@ class ByteWriter;
 struct ToolLoad {
     template <typename Io>
     void visit(Io& io) {
-        auto& [of, at, jumped, pushes, turns, done, deep, points, met, cut] = *this;
-        io(of, at, jumped, pushes, turns, done, deep, points, met, cut);
+        auto& [of, at, jumped, share, pushes, turns, done, deep, points, met, cut] = *this;
+        io(of, at, jumped, share, pushes, turns, done, deep, points, met, cut);
     }
 
     std::string name;
     Pose pose;
     Vec3 jump = Vec3::Zero();    // of its place, as what it acts on became other (LoadSum) [m]
+    double strength = 0;         // of a load: by which it acts, 1 being full
     Vec3 force = Vec3::Zero();   // that it exerts on the matter [N]
     Vec3 torque = Vec3::Zero();  // about the pose's origin [N m]
     double work = 0;             // done by it since the stage began [J]

@@ -91,6 +91,15 @@ TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
     CHECK(sunk(10) == Approx(mean_sag(weight, 147.15)).epsilon(0.01));
     CHECK(row[10].at("left force y [N]") == Approx(0.5 * (weight + 147.15)).epsilon(0.02));
     CHECK(row[10].at("gravity force y [N]") == Approx(-weight).epsilon(0.001));
+    // By how much of what it has in full each acts.
+    CHECK(row[10].at("gravity strength") == 1);
+    CHECK(row[10].at("books strength") == 1);
+    CHECK(row[0].at("books strength") == 0);
+    for (int frame = 0; frame <= 10; ++frame) {
+        CHECK(row[frame].at("books force y [N]") ==
+              Approx(-147.15 * row[frame].at("books strength")).margin(1e-9));
+    }
+    CHECK(!row[0].contains("left strength"));
     const Json energy = parse_json(bytes_of(run / "run.json")).at("stages").at(0).at("energies_J");
     const double work =
         energy.at("load_work").get<double>() + energy.at("gravity_work").get<double>();
