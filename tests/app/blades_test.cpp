@@ -60,8 +60,8 @@ TEST_CASE("a blade cuts a body as it lies when that blade comes, not as it lay f
     put_text(folder / "scene.toml",
              "[mesh]\nfile = \"" SWAGE_SOURCE_DIR
              "/assets/meshes/cube.obj\"\nlength = \"12 cm\"\n[material]\n"
-             "young_modulus = \"5 MPa\"\ndensity = 1000\nrestitution = 0\ndamping_ratio = 0.3\n"
-             "[mold]\nacross = 6\n[[stage]]\nmachine = \"two\"\ngravity = \"9.81 m/s2\"\n"
+             "young_modulus = \"2 MPa\"\ndensity = 1000\nrestitution = 0\ndamping_ratio = 0.3\n"
+             "[mold]\nacross = 4\n[[stage]]\nmachine = \"two\"\ngravity = \"9.81 m/s2\"\n"
              "self_contact = true\nduration = \"0.5 s\"\nframes = 100\n");
     const Outcome outcome = run_swage({"run", "scene.toml", "--no-render", "--out", "out"}, folder);
     INFO(outcome.err);
@@ -96,8 +96,8 @@ TEST_CASE(
              swage::test::box_obj(swage::Vec3(-1, -1, -1), swage::Vec3(1, 1, 1)));
     put_text(folder / "scene.toml",
              "[mesh]\nfile = \"box.obj\"\nlength = \"12 cm\"\n[material]\n"
-             "young_modulus = \"50 MPa\"\ndensity = 1000\ndamping_ratio = 0.3\n"
-             "[mold]\nacross = 8\n[[stage]]\nmachine = \"cross\"\ngravity = \"9.81 m/s2\"\n"
+             "young_modulus = \"5 MPa\"\ndensity = 1000\ndamping_ratio = 0.3\n"
+             "[mold]\nacross = 6\n[[stage]]\nmachine = \"cross\"\ngravity = \"9.81 m/s2\"\n"
              "self_contact = true\nduration = \"0.12 s\"\nframes = 240\n");
     const Outcome outcome = run_swage({"run", "scene.toml", "--no-render", "--out", "out"}, folder);
     INFO(outcome.err);
@@ -139,7 +139,7 @@ TEST_CASE("a blade cuts what grips have carried on since another came where it i
     put_text(folder / "scene.toml",
              "[mesh]\nfile = \"box.obj\"\nlength = \"12 cm\"\n[material]\n"
              "young_modulus = \"1 MPa\"\ndensity = 1000\ndamping_ratio = 0.3\n"
-             "[mold]\nacross = 12\n[[stage]]\nmachine = \"carry\"\nself_contact = true\n" +
+             "[mold]\nacross = 8\n[[stage]]\nmachine = \"carry\"\nself_contact = true\n" +
                  std::string(moves ? "solver = \"explicit\"\nduration = \"0.1 s\"\nframes = 80\n"
                                    : "frames = 40\n"));
     const Outcome outcome = run_swage({"run", "scene.toml", "--no-render", "--out", "out"}, folder);
@@ -167,7 +167,7 @@ TEST_CASE("what gravity speeds up past a slow edge is cut as it passes") {
     put_text(scratch.path() / "scene.toml",
              "[mesh]\nfile = \"" SWAGE_SOURCE_DIR
              "/assets/meshes/cube.obj\"\nlength = \"12 cm\"\n[material]\nname = \"rubber\"\n"
-             "[mold]\nacross = 6\n[[stage]]\nmachine = \"rise\"\ngravity = \"9.81 m/s2\"\n"
+             "[mold]\nacross = 4\n[[stage]]\nmachine = \"rise\"\ngravity = \"9.81 m/s2\"\n"
              "duration = \"0.3 s\"\nframes = 60\n");
     const Outcome outcome =
         run_swage({"run", "scene.toml", "--no-render", "--out", "out"}, scratch.path());
