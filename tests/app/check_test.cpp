@@ -17,11 +17,12 @@ namespace fs = std::filesystem;
 
 TEST_CASE("the steps that a run takes lie in the range that check tells") {
     const Scratch scratch;
+    run_swage({"make", "bar", "--length", "10 cm", "--division", "20", "--out", "bar.obj"},
+              scratch.path());
     const auto holds = [&](const std::string& stage, const std::string& material) {
         const fs::path scene = scratch.path() / "scene.toml", out = scratch.path() / "run";
         put_text(scene, "[mesh]\nfile = \"bar.obj\"\n[material]\n" + material +
-                            "[mold]\nacross = 3\n[[stage]]\nframes = 4\nmachine = \"" + stage);
-        run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+                            "[mold]\nacross = 2\n[[stage]]\nframes = 4\nmachine = \"" + stage);
         const Json cost = parse_json(run_swage({"check", scene.string(), "--json"}).out).at("cost");
         const Outcome run = run_swage(
             {"run", scene.string(), "--no-render", "--json", "--fresh", "--out", out.string()});
