@@ -97,11 +97,14 @@ double slid_as_far_as(const Aggregate& m) {
 // A strip of which one layer of cells breaks, whose clamped edges slide by each other, or part
 // while they do.
 void weak_layer(bool brief, Values& values) {
-    constexpr double kHeld = 3, kFirst = 0.5;
+    constexpr double kHeld = 3;
+    // A crack that runs before the bound is missed as well where the bound is begun with.
+    const double first = brief ? 0.85 : 0.5;
     struct Level {
         double reach, half, bound;
     };
-    for (const auto& [reach, half, bound] : {Level{8, 16.5, 0.15}, Level{16, 26.5, 0.05}}) {
+    for (const auto& [reach, half, bound] :
+         {Level{8, brief ? 12.5 : 16.5, 0.15}, Level{16, 26.5, 0.05}}) {
         if (brief && reach > 8) break;
         for (double degrees : {90.0, 45.0}) {
             if (brief && degrees < 90) break;
@@ -126,7 +129,7 @@ void weak_layer(bool brief, Values& values) {
                                  way.x() * way.x() / (2 * (1 + kCrackNu))) /
                                 (4 * half);
             const Drive rest = stand.drive;
-            double share = kFirst;
+            double share = first;
             for (; share < 4; share += kStep) {
                 Drive to = stand.drive;
                 for (int side : {-1, 1}) {
