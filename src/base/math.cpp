@@ -91,6 +91,16 @@ Mat3 shift_jacobian(const Vec3& axis, double theta) {
 
 }  // namespace
 
+Twist Twist::operator+(const Twist& other) const {
+    return {turn + other.turn, shift + other.shift};
+}
+
+Twist Twist::operator-(const Twist& other) const {
+    return {turn - other.turn, shift - other.shift};
+}
+
+Twist operator*(double s, const Twist& twist) { return {s * twist.turn, s * twist.shift}; }
+
 Twist twist_between(const Pose& from, const Pose& to) {
     const Pose change = to * from.inverse();
     const Vec3 turn = turn_between(from, to);

@@ -59,11 +59,9 @@ Vec3 turn_between(const Pose& from, const Pose& to);
 struct Twist {
     Vec3 turn = Vec3::Zero(), shift = Vec3::Zero();
 
-    Twist operator+(const Twist& other) const { return {turn + other.turn, shift + other.shift}; }
-    Twist operator-(const Twist& other) const { return {turn - other.turn, shift - other.shift}; }
-    friend Twist operator*(double s, const Twist& twist) {
-        return {s * twist.turn, s * twist.shift};
-    }
+    Twist operator+(const Twist& other) const;
+    Twist operator-(const Twist& other) const;
+    friend Twist operator*(double s, const Twist& twist);
 };
 
 // The twist that carries one pose to another, the shorter way round, and where it carries one.

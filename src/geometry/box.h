@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Axis-aligned boxes.
+// Axis-aligned boxes. Read by nearly every source: written out by coordinates, as expressions of
+// Eigen take far longer to compile.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -17,8 +19,10 @@ struct Box {
     bool empty() const {
         return !(low.x() <= high.x() && low.y() <= high.y() && low.z() <= high.z());
     }
-    Vec3 size() const { return high - low; }
-    Vec3 center() const { return 0.5 * (low + high); }
+    Vec3 size() const { return {high.x() - low.x(), high.y() - low.y(), high.z() - low.z()}; }
+    Vec3 center() const {
+        return {0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), 0.5 * (low.z() + high.z())};
+    }
     // Bit 0 along x, bit 1 along y, bit 2 along z.
     Vec3 corner(int c) const {
         return {(c & 1 ? high : low).x(), (c & 2 ? high : low).y(), (c & 4 ? high : low).z()};
@@ -58,11 +62,12 @@ struct Box {
 
 // 0: they overlap.
 inline double gap_between(const Box& a, const Box& b) {
-    Vec3 gap;
+    double squares = 0;
     for (int i = 0; i < 3; ++i) {
-        gap[i] = std::max(std::max(a.low[i] - b.high[i], b.low[i] - a.high[i]), 0.0);
+        const double gap = std::max(std::max(a.low[i] - b.high[i], b.low[i] - a.high[i]), 0.0);
+        squares += gap * gap;
     }
-    return gap.norm();
+    return std::sqrt(squares);
 }
 inline double Box::gap_to(const Vec3& point) const { return gap_between(*this, {point, point}); }
 

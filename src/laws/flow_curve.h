@@ -9,9 +9,7 @@
 // lines were passed. Its tangent is exact too; it jumps where lines meet.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <vector>
 
 #include "laws/lane_tensor.h"
@@ -35,13 +33,13 @@ struct FlowPart {
 using FlowCurve = std::vector<FlowPart>;
 
 inline FlowCurve flow_curve(const std::vector<FlowPoint>& point, double shear) {
-    FlowCurve curve;
+    FlowCurve curve(point.size());
     for (std::size_t n = 0; n < point.size(); ++n) {
         const auto& [strain, stress] = point[n];
         const double slope = n + 1 < point.size()
                                  ? (point[n + 1].stress - stress) / (point[n + 1].strain - strain)
                                  : 0.0;
-        curve.push_back({strain, stress + 3 * shear * strain, {stress - slope * strain, slope}});
+        curve[n] = {strain, stress + 3 * shear * strain, {stress - slope * strain, slope}};
     }
     return curve;
 }
@@ -61,9 +59,14 @@ SWAGE_INLINE FlowLine<double> line_at(const FlowCurve& curve, double reached) {
     return part_at(curve, reached)->line;
 }
 // That holds from a strain on.
-inline FlowCurve::const_iterator part_from(const FlowCurve& curve, double alpha) {
-    const auto is_behind = [](double strain, const FlowPart& part) { return strain < part.strain; };
-    return std::prev(std::upper_bound(curve.begin() + 1, curve.end(), alpha, is_behind));
+inline const FlowPart* part_from(const FlowCurve& curve, double alpha) {
+    const FlowPart* part = curve.data();
+    for (std::size_t left = curve.size(); left > 1;) {
+        const std::size_t half = left / 2;
+        part += alpha < part[half].strain ? 0 : half;
+        left -= half;
+    }
+    return part;
 }
 // Of several at a time, whose searches do not wait for each other. NOTE: kept out of the loops over
 // cells, which it would slow where nothing flows along a curve.
@@ -93,7 +96,7 @@ SWAGE_INLINE FlowLine<V> line_at(const FlowCurve& curve, const V& reached) {
 
 // The mean of the curve from alpha to alpha + d_alpha, which is what a flow takes per d_alpha.
 inline double mean_flow_stress(const FlowCurve& curve, double alpha, double d_alpha) {
-    auto n = static_cast<std::size_t>(part_from(curve, alpha) - curve.begin());
+    auto n = static_cast<std::size_t>(part_from(curve, alpha) - curve.data());
     const double end = alpha + d_alpha;
     const auto end_of = [&](std::size_t part) {
         return part + 1 < curve.size() && curve[part + 1].strain < end ? curve[part + 1].strain

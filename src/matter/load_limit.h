@@ -12,7 +12,7 @@ namespace swage {
 struct TurnAxis {
     using IsPlain = TurnAxis;
 
-    Vec3 along = Vec3::UnitZ(), at = Vec3::Zero();
+    Vec3 along = {0, 0, 1}, at = Vec3::Zero();
 
     // The part's torque about it [N m]. `torque`: about the pose's origin.
     double torque_of(const Vec3& force, const Vec3& torque, const Pose& world_from_part) const;
