@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "matter/broken_cells.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kReach = 2, kBeside = 1;  // cells
 constexpr std::size_t kMost = 3;
+constexpr double kAlong = 1e-3;  // of a normal that stands across a direction
 
 Vec3 in_doubles(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
@@ -79,11 +81,18 @@ std::optional<CutPlane> cut_before(const Aggregate& matter, const CutPlanes& cut
         return {};
     }
     const Vec3 middle = site.cast<double>() + Vec3::Constant(0.5) + 0.5 * out.cast<double>();
+    // The first that the way out meets: a plane along it, as of a crossing cut, passes by.
+    std::optional<CutPlane> first;
+    double least = std::numeric_limits<double>::infinity();
     for (const CutPlane& plane : cuts.around(middle)) {
-        const double ahead = (plane.place - middle).dot(plane.normal);
-        if (ahead * plane.normal.dot(out.cast<double>()) > 0) return plane;
+        const double along = plane.normal.dot(out.cast<double>());
+        if (std::abs(along) < kAlong) continue;
+        const double far = (plane.place - middle).dot(plane.normal) / along;
+        if (!(far > 0 && far < least)) continue;
+        least = far;
+        first = plane;
     }
-    return {};
+    return first;
 }
 
 }  // namespace swage

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Faces that a blade has laid open, however it stood to the lattice.
 #include "sim/contact_side.h"
+#include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/shared/lattice_fixture.h"
 #include "tests/sim/loads_fixture.h"
@@ -111,4 +112,84 @@ TEST_CASE("a piece slides down an oblique cut as on a smooth plane") {
     CHECK(way.dot(down) == Approx(expected).epsilon(0.05));
     CHECK(std::abs(way.dot(normal)) < 0.1 * kA);
     CHECK(std::abs(report.remainder) < 0.01 * report.gravity_work);
+}
+
+namespace {
+
+// A blade falls through the block along y; its path stands across x, before it is turned.
+void chop(Aggregate& block, const Quat& turn, double place) {
+    Blade blade;
+    blade.edge = {Vec3(0, 0, -20 * kA), Vec3(0, 0, 20 * kA)};
+    const auto at = [&](double height) {
+        return Pose{turn, turn * Vec3(place * kA, height * kA, 0)};
+    };
+    sever(block, crossed_connections(block, swept_triangles(blade, at(20), at(-20))));
+}
+
+// Of new surface, by the axis that it looks along most [cells].
+std::array<double, 3> new_area(Aggregate& block) {
+    const ContactSide side(block, true, nullptr);
+    std::array<double, 3> area{};
+    for (std::size_t p = side.own_points(); p < side.points().size(); ++p) {
+        if (!side.meets(int(p)) || side.is_loose(int(p))) continue;
+        Eigen::Index axis;
+        side.points().normal(p).cwiseAbs().maxCoeff(&axis);
+        area[std::size_t(axis)] += side.points().area(p) / (kA * kA);
+    }
+    return area;
+}
+
+}  // namespace
+
+TEST_CASE("dice keep the area of all their faces, though no blade stands quite square") {
+    Aggregate block = make_block(12, 6, 12, kA, kSpringy);
+    const std::vector<double> places = {-4.6, -2.4, -0.3, 2.4, 4.6};
+    const double off = GENERATE(0., 1e-9, -1e-4, 0.01, -0.02);
+    CAPTURE(off);
+    const Quat turned(Eigen::AngleAxisd(0.5 * kPi + off, Vec3::UnitY()));
+    for (double place : places) chop(block, Quat::Identity(), place);
+    for (double place : places) chop(block, turned, place);
+    REQUIRE(find_pieces(block).count == 36);
+    const std::array<double, 3> area = new_area(block);
+    // Two sides of five cuts, and seven whole cells across each way.
+    CHECK(area[0] == Approx(2 * 5 * 7 * 6).epsilon(1e-3));
+    CHECK(area[1] == 0);
+    CHECK(area[2] == Approx(2 * 5 * 7 * 6).epsilon(1e-3));
+}
+
+TEST_CASE("a stick cut from a block both ways rests on a face that the first blade cut") {
+    const double turn = GENERATE(0., 1e-6, -1e-6, 0.02, -0.02);
+    CAPTURE(turn);
+    Material matter = kSpringy;
+    matter.damping_ratio = 0.1;
+    Aggregate block = make_block(6, 8, 8, kA, matter);
+    const Vec3 x = Vec3(1, turn, 0).normalized(), y = Vec3(-turn, 1, 0).normalized();
+    for (double place : {-1.9, 0.1}) sever_plane(block, place * kA * x, x);
+    for (double place : {-2.1, 1.1}) sever_plane(block, place * kA * y, y);
+    const Pieces pieces = find_pieces(block);
+    REQUIRE(pieces.count == 9);
+    const auto is_stick = [&](std::size_t p) {
+        const Vec3 at = block.particle_reference.at(p) / kA;
+        return at.dot(x) > -1.9 && at.dot(x) < 0.1 && at.dot(y) > -2.1 && at.dot(y) < 1.1;
+    };
+    int in_stick = 0;
+    for (std::size_t p = 0; p < block.particle_count(); ++p) {
+        const Vec3 at = block.particle_reference.at(p);
+        in_stick += is_stick(p);
+        const Vec3 face(-at.dot(y), at.dot(x) + 1.9 * kA + 0.005, at.z());  // its face down
+        const Vec3 aside(0, 9.0 + 3 * pieces.particle_piece[p], 0);
+        block.particle_position.set(p, is_stick(p) ? face : Vec3(at + aside));
+    }
+    REQUIRE(in_stick == 2 * 4 * 9);
+    SimSettings settings = motion_settings();
+    settings.self_contact = true;
+    settings.gravity = Vec3(0, -9.81, 0);
+    const Apparatus floor = floor_with(0.3);
+    Simulation simulation(block, floor, settings);
+    for (int f = 0; f < 25; ++f) simulation.advance(floor_at(0.02 * f), floor_at(0.02 * (f + 1)));
+    double mean = 0;
+    for (std::size_t p = 0; p < block.particle_count(); ++p) {
+        if (is_stick(p)) mean += block.particle_position.y[p] / kA / in_stick;
+    }
+    CHECK(mean == Approx(1.4).margin(0.03));  // between the layers at 0.9 and at 1.9
 }
