@@ -174,11 +174,13 @@ void BodyContact::connections_changed(std::size_t body) {
 struct BodyContact::State {
     std::vector<std::size_t> near;
     std::vector<ContactWay::State> way;
+    std::vector<double> let_go;
 };
 
 std::shared_ptr<const BodyContact::State> BodyContact::save() const {
     State state;
     state.near = near_;
+    state.let_go = let_go_;
     state.way.reserve(way_.size());
     for (const ContactWay& way : way_) state.way.push_back(way.save());
     return std::make_shared<const State>(std::move(state));
@@ -186,6 +188,7 @@ std::shared_ptr<const BodyContact::State> BodyContact::save() const {
 
 void BodyContact::restore(const State& state) {
     near_ = state.near;
+    let_go_ = state.let_go;
     for (std::size_t w : near_) way_[w].come_near(step_);
     for (std::size_t w = 0; w < way_.size(); ++w) way_[w].restore(state.way[w]);
     allowance_ = -1;
@@ -373,8 +376,9 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& body_force, const Ve
     }
     for (std::size_t b = bodies_; b < side_.size(); ++b) sums[body_of(b)].join(sums[b]);
     sums.resize(bodies_);
-    for (std::size_t b = 0; b < let_go_.size(); ++b) sums[b].damped += let_go_[b];
-    let_go_.clear();
+    for (std::size_t b = 0; b < let_go_.size(); ++b) {
+        if (!bodies_asleep[b]) sums[b].damped += std::exchange(let_go_[b], 0.0);
+    }
 }
 
 void BodyContact::add_stiffness(std::vector<double>& stiffness) const {
