@@ -58,12 +58,12 @@ void BodyContact::find_thin() {
             const auto was = std::find_if(thin_.begin(), thin_.end(), [&](const Thin& thin) {
                 return thin.piece && thin.body == b && thin.piece->particles() == one;
             });
-            is_same = is_same && was == thin_.begin() + std::ptrdiff_t(n);
             const std::vector<ParticleId> particles = one;
             std::unique_ptr<ThinPiece> piece =
                 was != thin_.end() ? std::move(was->piece)
                                    : ThinPiece::find(side.matter(), *side.molded(), std::move(one));
             if (piece == nullptr) continue;
+            is_same = is_same && was == thin_.begin() + std::ptrdiff_t(n);
             all.insert(all.end(), particles.begin(), particles.end());
             found.push_back({b, std::move(piece)});
         }
