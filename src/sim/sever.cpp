@@ -14,6 +14,7 @@
 #include "geometry/box.h"
 #include "geometry/triangle_tree.h"
 #include "matter/particle_site.h"
+#include "sim/joined_shape.h"
 
 namespace swage {
 
@@ -134,8 +135,9 @@ bool crosses(const std::vector<Triangle>& swept, const Vec3& from, const Vec3& t
 
 namespace {
 
-// Mean deformation of a whole cell that the connection lies in; none where there is no such cell.
-std::optional<Mat3> deformation_at(const Aggregate& matter, const SeverEvent& event) {
+// Mean deformation of a whole cell that the connection lies in; where there is none, as what is
+// still joined there tells.
+Mat3 deformation_at(const Aggregate& matter, const SeverEvent& event) {
     const Vec3i a = lattice_site(matter, event.lower), b = lattice_site(matter, event.upper);
     for (int back = 0; back < 8; ++back) {
         const Vec3i step = corner_step(back);
@@ -148,9 +150,9 @@ std::optional<Mat3> deformation_at(const Aggregate& matter, const SeverEvent& ev
             const Vec3 from_middle = corner_step(c).cast<double>() - Vec3::Constant(0.5);
             sum += matter.particle_position.at(corners[c]) * from_middle.transpose();
         }
-        return Mat3(sum / (2 * matter.lattice.spacing));
+        return sum / (2 * matter.lattice.spacing);
     }
-    return {};
+    return joined_deformation(matter, event.lower, event.upper);
 }
 
 // By the blade where it is, not as it is shifted.
@@ -160,11 +162,8 @@ void note_crossing(const Aggregate& matter, const Triangle& shifted, const Vec3&
     for (Vec3& corner : t) corner -= shift_of(matter.lattice.spacing);
     const double before = volume6(t[0], t[1], t[2], from), after = volume6(t[0], t[1], t[2], to);
     event.share = static_cast<float>(std::clamp(before / (before - after), 0.0, 1.0));
-    Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
-    if (const auto deformation = deformation_at(matter, event)) {
-        normal = deformation->transpose() * normal;
-    }
-    normal.normalize();
+    const Vec3 path = (t[1] - t[0]).cross(t[2] - t[0]);
+    const Vec3 normal = (deformation_at(matter, event).transpose() * path).normalized();
     for (int d = 0; d < 3; ++d) event.normal[std::size_t(d)] = static_cast<float>(normal[d]);
 }
 
