@@ -37,7 +37,7 @@ TEST_CASE("what springs hold between thin slices is not lost when a blade splits
     settings.self_contact = true;
     settings.step_safety = 0.2;
     Apparatus cutter;
-    cutter.blade.push_back({.edge = {Vec3(0.013, 0, -5), Vec3(0.013, 0, 5)}});
+    cutter.blade.emplace_back().edge = {Vec3(0.013, 0, -5), Vec3(0.013, 0, 5)};
     // The upper slice lies at 0.2 m, the middle one at 0.1 m.
     const auto at = [last = frame_of_cut](int frame) {
         Drive drive = still(0.001 * frame);
