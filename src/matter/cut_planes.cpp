@@ -6,13 +6,14 @@
 #include <limits>
 #include <tuple>
 
+#include "matter/bent_path.h"
 #include "matter/broken_cells.h"
 
 namespace swage {
 
 namespace {
 
-constexpr double kReach = 2, kBeside = 1;  // cells
+constexpr double kBeside = 1;  // cells
 constexpr std::size_t kMost = 3;
 constexpr double kAlong = 1e-3;  // of a normal that stands across a direction
 
@@ -20,10 +21,16 @@ Vec3 in_doubles(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 
+double CutPlane::height(const Vec3& of) const {
+    const Vec3 way = of - place;
+    const double high = way.dot(normal);
+    return is_flat ? high : high - 0.5 * way.dot(bend * way);
+}
+
 double CutPlane::distance(const Vec3& from) const {
     const Vec3 way = from - place;
-    const double across = std::abs(way.dot(normal));
-    const double along = std::sqrt(std::max(0.0, way.squaredNorm() - across * across));
+    const double straight = way.dot(normal), across = std::abs(height(from));
+    const double along = std::sqrt(std::max(0.0, way.squaredNorm() - straight * straight));
     const double past = std::max(0.0, along - kBeside);
     return std::sqrt(across * across + past * past);
 }
@@ -38,10 +45,10 @@ CutPlanes::CutPlanes(const Aggregate& matter) : point_(matter.cut) {
     });
 }
 
-std::vector<CutPlane> CutPlanes::around(const Vec3& place) const {
+std::vector<CutPlane> CutPlanes::around(const Vec3& place, double reach) const {
     std::vector<std::pair<double, int>> near;  // by squared distance
-    const Vec3i low = (place.array() - kReach).floor().cast<int>(),
-                high = (place.array() + kReach).floor().cast<int>();
+    const Vec3i low = (place.array() - reach).floor().cast<int>(),
+                high = (place.array() + reach).floor().cast<int>();
     for (int k = low.z(); k <= high.z(); ++k) {
         for (int j = low.y(); j <= high.y(); ++j) {
             for (int i = low.x(); i <= high.x(); ++i) {
@@ -52,23 +59,26 @@ std::vector<CutPlane> CutPlanes::around(const Vec3& place) const {
                 for (; at != binned_.end() && at->bin == bin; ++at) {
                     const double far =
                         (in_doubles(point_[std::size_t(at->point)].place) - place).squaredNorm();
-                    if (far < kReach * kReach) near.emplace_back(far, at->point);
+                    if (far < reach * reach) near.emplace_back(far, at->point);
                 }
             }
         }
     }
     std::sort(near.begin(), near.end());
-    std::vector<CutPlane> planes;
+    std::vector<CutPlane> all, planes;
+    all.reserve(near.size());
     for (const auto& [far, point] : near) {
         const CutPoint& cut = point_[std::size_t(point)];
-        const CutPlane plane{in_doubles(cut.place), in_doubles(cut.normal)};
+        all.push_back({in_doubles(cut.place), in_doubles(cut.normal)});
+    }
+    for (const CutPlane& plane : all) {
         const bool is_new = std::ranges::none_of(planes, [&](const CutPlane& known) {
             return std::abs(known.normal.dot(plane.normal)) > kOneWay;
         });
         if (is_new) planes.push_back(plane);
         if (planes.size() == kMost) break;
     }
-    return planes;
+    return bends(planes, all) ? bent_paths(place, all, kMost) : planes;
 }
 
 std::optional<CutPlane> cut_before(const Aggregate& matter, const CutPlanes& cuts,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where blades have gone through a body, near a place: the planes of their paths at the connections
-// that they severed. All in cells from the lattice's origin, in the shape at molding.
+// that they severed; where a path bends, its tangent plane at the place's foot
+// (matter/bent_path.h). All in cells from the lattice's origin, in the shape at molding.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +16,13 @@ namespace swage {
 inline constexpr double kOneWay = 0.92;
 
 struct CutPlane {
-    Vec3 place, normal;  // unit, to either side
+    Vec3 place, normal;        // unit, to either side
+    Mat3 bend = Mat3::Zero();  // second derivative of what lies along the normal, by what across
+    bool is_flat = true;       // it does not bend near the place
 
-    // How far it is to what lies of the plane within a cell of `place`, as a blade's path ends.
+    // How far a place lies along the normal.
+    double height(const Vec3& of) const;
+    // How far it is to what lies of the path within a cell of `place`, as a blade's path ends.
     double distance(const Vec3& from) const;
 };
 
@@ -25,9 +30,10 @@ class CutPlanes {
   public:
     explicit CutPlanes(const Aggregate& matter);
 
-    // Those that come within two cells, the nearest of each of up to three directions (kOneWay);
-    // the nearest first.
-    std::vector<CutPlane> around(const Vec3& place) const;
+    static constexpr double kAround = 2;
+    // Those that come within reach, the nearest of each of up to three directions (kOneWay); the
+    // nearest first.
+    std::vector<CutPlane> around(const Vec3& place, double reach = kAround) const;
 
     bool empty() const { return point_.empty(); }
 

@@ -71,6 +71,7 @@ CutSurface::CutSurface(const Aggregate& matter, const std::vector<char>& is_whol
             }
         });
     }
+    PathsAtCorners paths(cuts);
     for (const Vec3i& site : site_of_skin) {
         around(kReach, [&](const Vec3i& way) {
             const Vec3i at = site + way;
@@ -85,8 +86,15 @@ CutSurface::CutSurface(const Aggregate& matter, const std::vector<char>& is_whol
                 const std::vector<CutPlane>& more = near[std::size_t(known - parted.begin())];
                 beside.insert(beside.end(), more.begin(), more.end());
             }
-            plane_.push_back(planes_of(at, beside));
-            const Depths& depth = plane_.back().empty() ? all : broken;
+            plane_.emplace_back();
+            bent_of_.push_back(-1);
+            if (std::ranges::all_of(beside, &CutPlane::is_flat)) {
+                plane_.back() = planes_of(at, beside);
+            } else {
+                bent_of_.back() = bent_.add(at, beside, paths);
+            }
+            const bool is_told = !plane_.back().empty() || bent_of_.back() >= 0;
+            const Depths& depth = is_told ? broken : all;
             corner_.emplace_back();
             for (int c = 0; c < 8; ++c) {
                 const auto found = depth.find(key_of(at + corner_step(c)));
@@ -94,6 +102,7 @@ CutSurface::CutSurface(const Aggregate& matter, const std::vector<char>& is_whol
             }
         });
     }
+    bent_.add_beside(lattice, is_whole, paths);
 }
 
 // Of each direction the nearest. None where one would go through the cell, as a path that ends
@@ -124,7 +133,9 @@ RestSurface::Depth CutSurface::at(CellId cell, const Vec3& place) const {
         const double far = plane.depth + plane.normal.dot(place);
         if (far > depth.distance) depth = {far, plane.normal};
     }
-    return depth;
+    if (bent_of_[slot_[cell]] < 0) return depth;
+    const RestSurface::Depth bent = bent_.at(bent_of_[slot_[cell]], place);
+    return bent.distance > depth.distance ? bent : depth;
 }
 
 }  // namespace swage

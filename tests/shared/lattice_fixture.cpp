@@ -93,6 +93,41 @@ void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
     keep_sides(m, sides);
 }
 
+void sever_along(Aggregate& m, const Distance& distance) {
+    const double a = m.lattice.spacing;
+    const Vec3 shift = a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+    const auto is_above = [&](const Vec3& x) { return distance(x - shift) >= 0; };
+    std::vector<PointSide> sides;
+    for (std::size_t p = 0; p < m.surface.size(); ++p) {
+        const bool above = is_above(m.surface.reference(p, m.particle_reference));
+        int corners = m.surface.side(p);
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 x = m.particle_reference.at(m.surface.corner(p)[c]);
+            if (is_above(x) != above) corners &= ~(1 << c);
+        }
+        sides.push_back({int(p), corners});
+    }
+    const auto in_floats = [](const Vec3& v) {
+        return std::array<float, 3>{float(v.x()), float(v.y()), float(v.z())};
+    };
+    for (const Span& span : m.lattice.span) {
+        for (int n = 0; n < span.count; ++n) {
+            Vec3 low = m.particle_reference.at(span.lower + n),
+                 high = m.particle_reference.at(span.upper + n);
+            const bool above = is_above(low);
+            if (above == is_above(high)) continue;
+            m.connection[span.direction].weight.set(span.lower + n, 0);
+            for (int halved = 0; halved < 40; ++halved) {
+                const Vec3 middle = 0.5 * (low + high);
+                (is_above(middle) == above ? low : high) = middle;
+            }
+            m.cut.push_back({in_floats((low - shift - m.lattice.origin) / a),
+                             in_floats(gradient_of(distance, low - shift, 1e-4 * a))});
+        }
+    }
+    keep_sides(m, sides);
+}
+
 void deform(Aggregate& m, const std::function<Vec3(const Vec3&)>& map) {
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         m.particle_position.set(p, map(m.particle_reference.at(p)));

@@ -22,6 +22,9 @@ Aggregate make_shape(const Distance& distance, const Vec3& low, const Vec3i& cou
 void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
                  const std::function<bool(const Vec3&)>& where = nullptr);
 
+// The same along a surface, in matter as molded, by how far a place lies from it [m].
+void sever_along(Aggregate& m, const Distance& distance);
+
 // Puts every particle where the map takes its reference position.
 void deform(Aggregate& m, const std::function<Vec3(const Vec3&)>& map);
 
