@@ -94,8 +94,7 @@ void BodyContact::replace_thin(std::vector<Thin> thin) {
             if (side_[s] && &side_[s]->matter() == &thin[n].piece->matter()) was[bodies_ + n] = s;
         }
         sides.push_back(was[bodies_ + n] != kNew ? std::move(side_[was[bodies_ + n]])
-                                                 : std::make_unique<ContactSide>(
-                                                       thin[n].piece->matter(), false, nullptr));
+                                                 : thin[n].piece->contact_side());
     }
     std::vector<Pair> pairs(pair_.begin(), pair_.begin() + std::ptrdiff_t(between_bodies));
     std::vector<ContactWay> ways;

@@ -11,7 +11,8 @@ Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& 
     if (out.isZero()) return Onward::ends_lost;  // no number
     CellId next = -1;
     Vec3i step = out;
-    bool opens = false;    // onto a cell that is cut or broken, part of which is still this side's
+    // Onto a cell that is cut or broken, part of which is still this side's.
+    bool opens = onto.is_thin();
     bool is_deep = false;  // what lies on is no rim
     const auto try_step = [&](const Vec3i& s) {
         const Vec3i site = at.site + s;

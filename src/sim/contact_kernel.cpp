@@ -63,7 +63,8 @@ struct ContactWay::Kernel {
             }
         }
         if (!onto.may_hold(contact.cell) || !(gradient.volume > 0)) return false;
-        depth = onto.depth(contact.site, contact.cell, contact.place);
+        depth = onto.depth(contact.site, contact.cell, contact.place, last.slope);
+        contact.slope = depth.gradient.cast<float>();
         if constexpr (kOwn) {
             const auto own = onto.own_share(contact.point, contact.site, contact.place);
             depth.gradient = own.value * depth.gradient + depth.distance * own.gradient;
@@ -333,7 +334,9 @@ struct ContactWay::Kernel {
             next.is_new = !at.is_known() && (last.is_new || !way.is_static());
             contact.dashed = f.force - f.elastic;
             next.bound = 0;
+            next.slope.setZero();
             if (f.history.touches) {
+                next.slope = contact.slope;
                 const Vec4 reach = vec4(f.reach);
                 next.place = contact.site.cast<double>() + contact.place;
                 next.reach = Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),

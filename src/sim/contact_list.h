@@ -18,7 +18,8 @@ struct Contact : CellPlace {
     int carriers = 0;
     std::array<int, 8> carrier{};
     std::array<float, 8> share{};
-    Vec3 dashed = Vec3::Zero();  // what its dashpots did when last found [N]
+    Eigen::Vector3f slope = Eigen::Vector3f::Zero();  // of the depth, where it was last found
+    Vec3 dashed = Vec3::Zero();                       // what its dashpots did then [N]
 };
 
 // Contacts meet as a step has brought them; or they are where the last step that was kept has
@@ -45,6 +46,7 @@ struct ContactMemory {
     // Share of its stiffness that is left since a cell was squeezed so thin that no step could have
     // followed the whole.
     double soft = 1;
+    Eigen::Vector3f slope = Eigen::Vector3f::Zero();  // of the depth; zero where it does not touch
     bool is_new = true;  // to the surfaces as they are: its depth is not known from before
 
     // It has become as soft where it is, which is counted once.

@@ -24,8 +24,7 @@ Box box_of_cell(const Vec3Array& position, const std::array<ParticleId, 8>& corn
 void find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
                    const ContactList& last, ContactList& found) {
     const Aggregate& other = onto.matter();
-    const bool is_broken = onto.points().size() > onto.own_points();
-    margin += (is_broken ? onto.beyond() : kSliver) * other.lattice.spacing;
+    margin += (onto.is_cut() ? onto.beyond() : kSliver) * other.lattice.spacing;
     // What meets nothing is nowhere.
     std::vector<Vec3> point(from.points().size(),
                             Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));

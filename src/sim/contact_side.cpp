@@ -134,6 +134,17 @@ ContactSide::ContactSide(Aggregate& matter, bool itself, std::shared_ptr<const R
     find_cells();
 }
 
+ContactSide::ContactSide(Aggregate& matter, std::shared_ptr<const RestSurface> molded,
+                         std::shared_ptr<const CutSurface> ends)
+    : matter_(&matter),
+      patch_(matter),
+      itself_(false),
+      touch_(matter, false),
+      molded_(std::move(molded)),
+      ends_(std::move(ends)) {
+    find_cells();
+}
+
 void ContactSide::connections_changed() {
     touch_.connections_changed(*matter_);
     find_cells();
@@ -146,8 +157,8 @@ void ContactSide::leave_out(const std::vector<ParticleId>& particles) {
 
 void ContactSide::find_cells() {
     rim_ = molded_->skin();
-    if (touch_.size() > touch_.own()) {
-        cut_ = std::make_shared<const CutSurface>(*matter_, touch_.whole());
+    if (is_thin() || touch_.size() > touch_.own()) {
+        cut_ = is_thin() ? ends_ : std::make_shared<const CutSurface>(*matter_, touch_.whole());
         std::vector<CellId> both;
         std::set_union(rim_.begin(), rim_.end(), cut_->skin().begin(), cut_->skin().end(),
                        std::back_inserter(both));
@@ -197,7 +208,22 @@ std::optional<RestSurface::Depth> ContactSide::molded_depth(const Vec3i& site, C
         local = place - step.cast<double>();
     }
     if (last < 0) return {};
-    return molded_->at_sliver(last, local);
+    return is_thin() ? molded_->at(last, local) : molded_->at_sliver(last, local);
+}
+
+// It may lie beyond its cells, which reach half-way only.
+RestSurface::Depth ContactSide::thin_depth(const Vec3i& site, CellId cell, const Vec3& place,
+                                           const Vec3& met) const {
+    RestSurface::Depth depth{-CutSurface::kBeforeCut, Vec3::Zero()};
+    if (cut_->is_rim(cell)) depth = cut_->at(cell, place, met);
+    const std::optional<RestSurface::Depth> own = molded_depth(site, cell, place);
+    if (own && own->distance > depth.distance && !CutSurface::is_opposed(own->gradient, met)) {
+        depth = *own;
+    }
+    const Vec3 out = place - place.cwiseMax(0.0).cwiseMin(1.0);
+    const double far = out.norm();
+    if (far > 0 && far - beyond(cell) > depth.distance) depth = {far - beyond(cell), out / far};
+    return depth;
 }
 
 RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,

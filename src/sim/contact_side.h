@@ -21,6 +21,10 @@ class ContactSide {
     // `itself`: whether it may meet itself. The body must outlive it. `molded`: as another has it
     // that is_shared(); null: it is found.
     ContactSide(Aggregate& matter, bool itself, std::shared_ptr<const RestSurface> molded);
+    // Of a piece without a whole cell (sim/thin_piece.h): where blades have ended it, beside its
+    // surface as molded.
+    ContactSide(Aggregate& matter, std::shared_ptr<const RestSurface> molded,
+                std::shared_ptr<const CutSurface> ends);
 
     // A blade or a crack has changed which cells are whole. Points keep their numbers.
     void connections_changed();
@@ -47,11 +51,19 @@ class ContactSide {
         return cut_ != nullptr ? cut_->beyond(cell) : CutSurface::kBeforeBreak;
     }
     double beyond() const {
-        return matter_->cut.empty() ? CutSurface::kBeforeBreak : CutSurface::kBeforeCut;
+        return matter_->cut.empty() && !is_thin() ? CutSurface::kBeforeBreak
+                                                  : CutSurface::kBeforeCut;
     }
+    bool is_thin() const { return ends_ != nullptr; }
+    // Whether any surface is new.
+    bool is_cut() const { return is_thin() || touch_.size() > touch_.own(); }
     // How deep a place of a cell lies below the surface as molded or, where matter is cut or
     // broken, below the new one, whichever is nearer. Before a new face it may lie outside.
-    RestSurface::Depth depth(const Vec3i& site, CellId cell, const Vec3& place) const {
+    // `met`: the slope of that where a point that touches has met it, else zero. What has come in
+    // on one side of a thin piece does not come out on the other.
+    RestSurface::Depth depth(const Vec3i& site, CellId cell, const Vec3& place,
+                             const Eigen::Vector3f& met) const {
+        if (is_thin()) return thin_depth(site, cell, place, met.cast<double>());
         if (cut_ != nullptr) return least_depth(site, cell, place);
         const bool inside = (place.array() >= 0).all() && (place.array() <= 1).all();
         return inside ? molded_->at(cell, place) : molded_->at_sliver(cell, place);
@@ -100,6 +112,8 @@ class ContactSide {
   private:
     std::optional<RestSurface::Depth> molded_depth(const Vec3i& site, CellId cell,
                                                    const Vec3& place) const;
+    RestSurface::Depth thin_depth(const Vec3i& site, CellId cell, const Vec3& place,
+                                  const Vec3& met) const;
     RestSurface::Depth least_depth(const Vec3i& site, CellId cell, const Vec3& place) const;
     void find_cells();
     void find_near();
@@ -113,7 +127,8 @@ class ContactSide {
     bool itself_;
     TouchPoints touch_;
     std::shared_ptr<const RestSurface> molded_;
-    std::shared_ptr<const CutSurface> cut_;  // null where all is whole
+    std::shared_ptr<const CutSurface> ends_;  // null: no thin piece
+    std::shared_ptr<const CutSurface> cut_;   // null where all is whole
     std::vector<CellId> rim_;
     std::vector<ParticleId> skin_;
     // With itself: of each point its place at molding, from the lattice's origin, in cells.

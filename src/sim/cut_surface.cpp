@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "matter/cut_planes.h"
 #include "matter/open_faces.h"
@@ -127,11 +128,21 @@ std::vector<CutSurface::Plane> CutSurface::planes_of(const Vec3i& site,
     return planes;
 }
 
-RestSurface::Depth CutSurface::at(CellId cell, const Vec3& place) const {
+CutSurface::CutSurface(std::vector<std::vector<Plane>> planes) : plane_(std::move(planes)) {
+    std::array<float, 8> deep;
+    deep.fill(kDeep);
+    corner_.assign(plane_.size(), deep);
+    for (std::size_t cell = 0; cell < plane_.size(); ++cell) {
+        slot_.push_back(plane_[cell].empty() ? -1 : static_cast<int>(cell));
+        if (slot_.back() >= 0) skin_.push_back(static_cast<CellId>(cell));
+    }
+}
+
+RestSurface::Depth CutSurface::at(CellId cell, const Vec3& place, const Vec3& met) const {
     RestSurface::Depth depth = interpolate_depth(corner_[slot_[cell]], place);
     for (const Plane& plane : plane_[slot_[cell]]) {
         const double far = plane.depth + plane.normal.dot(place);
-        if (far > depth.distance) depth = {far, plane.normal};
+        if (far > depth.distance && !is_opposed(plane.normal, met)) depth = {far, plane.normal};
     }
     if (bent_of_[slot_[cell]] < 0) return depth;
     const RestSurface::Depth bent = bent_.at(bent_of_[slot_[cell]], place);

@@ -20,10 +20,19 @@ namespace swage {
 
 class CutSurface {
   public:
-    CutSurface(const Aggregate& matter, const std::vector<char>& is_whole);
+    struct Plane {
+        Vec3 normal;   // outward
+        double depth;  // of the cell's low corner, less than zero inside
+    };
 
-    // Of a whole cell that is rim: within two and a half spacings.
-    RestSurface::Depth at(CellId cell, const Vec3& place) const;
+    CutSurface(const Aggregate& matter, const std::vector<char>& is_whole);
+    // Of the planes that end each cell.
+    explicit CutSurface(std::vector<std::vector<Plane>> planes);
+
+    // Of a whole cell that is rim: within two and a half spacings. What looks the other way than
+    // `met`, where that is not zero, does not count.
+    RestSurface::Depth at(CellId cell, const Vec3& place, const Vec3& met = Vec3::Zero()) const;
+    static bool is_opposed(const Vec3& normal, const Vec3& met) { return normal.dot(met) < -0.3; }
     bool is_rim(CellId cell) const { return slot_[cell] >= 0; }
     // How far outside of a whole cell the surface may lie: before cuts farther than before breaks.
     double beyond(CellId cell) const {
@@ -36,10 +45,6 @@ class CutSurface {
     const std::vector<CellId>& skin() const { return skin_; }
 
   private:
-    struct Plane {
-        Vec3 normal;   // outward
-        double depth;  // of the cell's low corner, less than zero inside
-    };
     static std::vector<Plane> planes_of(const Vec3i& site, const std::vector<CutPlane>& near);
 
     std::vector<int> slot_;                     // of each cell, -1: no rim

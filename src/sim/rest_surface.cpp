@@ -46,7 +46,7 @@ SurfaceDepth interpolate_depth(const std::array<float, 8>& d, const Vec3& p) {
             Vec3(q.z() * gx0 + p.z() * gx1, q.z() * (d10 - d00) + p.z() * (d11 - d01), d1 - d0)};
 }
 
-RestSurface::RestSurface(const Aggregate& matter) {
+RestSurface::RestSurface(const Aggregate& matter, bool ends) : ends_(ends) {
     const Lattice& lattice = matter.lattice;
     bin_points(matter);
     std::vector<Vec3i> site_of_bin;
@@ -266,7 +266,7 @@ void RestSurface::measure_corners(const Lattice& lattice) {
         for (int c = 0; c < 8; ++c) {
             is_outer = is_outer || lattice.cell_at(corner[n] - corner_step(c)) < 0;
         }
-        if (is_outer) value[n] = static_cast<float>(at_end(value[n]));
+        if (is_outer && ends_) value[n] = static_cast<float>(at_end(value[n]));
     });
     corner_.resize(site_.size());
     for (std::size_t n = 0; n < site_.size(); ++n) {
@@ -377,7 +377,7 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
             }
             sample = distance(site + p, near);
             if (std::isnan(sample)) sample = distance(site + p);
-            if (is_outer) sample = at_end(sample);
+            if (is_outer && ends_) sample = at_end(sample);
         }
     });
 }

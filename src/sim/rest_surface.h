@@ -41,7 +41,8 @@ SurfaceDepth interpolate_depth(const std::array<float, 8>& corner, const Vec3& p
 
 class RestSurface {
   public:
-    explicit RestSurface(const Aggregate& matter);
+    // `ends`: whether the body ends with its cells.
+    explicit RestSurface(const Aggregate& matter, bool ends = true);
     // Whether those of both are the same: of bodies that are molded alike one serves.
     static bool is_shared(const Aggregate& a, const Aggregate& b);
 
@@ -86,6 +87,7 @@ class RestSurface {
     void find_fine(std::vector<char>& is_fine) const;
     void measure_fine(const Lattice& lattice, const std::vector<char>& is_fine);
 
+    bool ends_;
     std::vector<Vec3> point_, normal_;  // sorted by bin
     std::vector<Site> bin_;
     Vec3i row_low_{0, 0, 0}, row_count_{0, 0, 0};  // rows of bins along x: by y, then z

@@ -233,8 +233,8 @@ void sever(Aggregate& matter, std::span<const SeverEvent> events) {
         matter.connection[e.direction].weight.set(e.lower, 0);
         if (e.normal == SeverEvent().normal) continue;
         const Vec3i a = lattice_site(matter, e.lower), b = lattice_site(matter, e.upper);
-        const Eigen::Vector3f at = a.cast<float>() + e.share * (b - a).cast<float>();
-        matter.cut.push_back({{at.x(), at.y(), at.z()}, e.normal});
+        const Vec3 normal(e.normal[0], e.normal[1], e.normal[2]);
+        matter.cut.push_back(cut_point(a, b, e.share, normal));
     }
 }
 

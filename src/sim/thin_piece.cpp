@@ -58,7 +58,13 @@ std::unique_ptr<ThinPiece> ThinPiece::find(const Aggregate& of, const RestSurfac
     for (std::size_t c = 0; c < piece->matter_.particle_count(); ++c) {
         if (!piece->add_corner(c)) return nullptr;
     }
-    piece->add_surface(molded);
+    std::vector<Vec3i> sites;
+    for (std::size_t n = 0; n < piece->particle_.size(); ++n) sites.push_back(piece->site_of(n));
+    const ThinEnds ends(of, molded, sites, [&](const Vec3i& at) { return piece->number_at(at); });
+    piece->find_ends(ends);
+    piece->add_molded(ends);
+    piece->molded_ = std::make_shared<const RestSurface>(piece->matter_, false);
+    piece->add_new(ends, molded);
     piece->follow();
     return piece;
 }
@@ -221,39 +227,127 @@ void ThinPiece::add_point(const Vec3i& cell, const Vec3& at, double area, const 
     matter_.surface.add(lattice.cell_row(number), place, area, normal);
 }
 
-void ThinPiece::add_surface(const RestSurface& molded) {
+// As molded: what lies before the planes that end the nearest of its particles for which it does.
+// Of patches that a plane goes through what is left: they are half a cell wide.
+void ThinPiece::add_molded(const ThinEnds& ends) {
+    constexpr double kAlong = 0.3;  // sine of the angle to a plane that hardly parts them
+    const Lattice& lattice = of_->lattice;
+    for (std::size_t p = 0; p < of_->surface.size(); ++p) {
+        if (of_->surface.is_loose(p)) continue;
+        const std::array<ParticleId, 8> corner = of_->surface.corner(p);
+        const Vec3 normal = of_->surface.normal(p),
+                   at = (of_->surface_reference(p) - lattice.origin) / lattice.spacing;
+        const double half = 0.5 * std::sqrt(of_->surface.area(p)) / lattice.spacing;
+        std::vector<std::pair<double, int>> near;
+        for (int c = 0; c < 8; ++c) {
+            const int number = slot_[std::size_t(corner[std::size_t(c)])];
+            if (number < 0) continue;
+            const Vec3 way = site_of(std::size_t(number)).cast<double>() - at;
+            near.emplace_back(way.squaredNorm(), c);
+        }
+        std::sort(near.begin(), near.end());
+        for (const auto& [far, c] : near) {
+            const int number = slot_[std::size_t(corner[std::size_t(c)])];
+            const Vec3i site = site_of(std::size_t(number));
+            Vec3 place = at;
+            double left = 1;
+            for (const CutPlane& plane : planes_of(site, ends)) {
+                const double out = (place - plane.place).dot(plane.normal);
+                const Vec3 way = plane.normal - plane.normal.dot(normal) * normal;
+                const double sine = way.norm();
+                if (sine < kAlong) {
+                    if (out > 0) left = 0;
+                    continue;
+                }
+                const double past = out / sine;
+                if (past <= -half) continue;
+                if (past >= half) left = 0;
+                left *= (half - past) / (2 * half);
+                place -= 0.5 * (past + half) / sine * way;
+            }
+            if (left <= 0) continue;
+            Vec3i cell = site;
+            if (axis_ >= 0) {
+                const Vec3i flat = Vec3i::Ones() - Vec3i::Unit(axis_);
+                cell -= Vec3i(corner_step(c)).cwiseProduct(flat);
+            }
+            add_point(cell, lattice.origin + lattice.spacing * place, left * of_->surface.area(p),
+                      normal);
+            break;
+        }
+    }
+}
+
+// Quarters of the faces toward what is not the piece's, brought to the planes that end it there,
+// where that lies in the matter. As many look out along an axis as a plane's area has that way.
+void ThinPiece::add_new(const ThinEnds& ends, const RestSurface& molded) {
+    constexpr double kOn = 1e-3;  // cells
     const Lattice& lattice = of_->lattice;
     const double a = lattice.spacing;
-    // As molded: what lies in the cells about its particles.
-    for (std::size_t p = 0; p < of_->surface.size(); ++p) {
-        const Vec3 place = of_->surface.place(p);
-        const int c = (place.x() > 0.5) + 2 * (place.y() > 0.5) + 4 * (place.z() > 0.5);
-        const int number = slot_[std::size_t(of_->surface.corner(p)[std::size_t(c)])];
-        if (number < 0) continue;
-        Vec3i site = site_of(std::size_t(number));
-        if (axis_ >= 0)
-            site -= Vec3i(corner_step(c)).cwiseProduct(Vec3i::Ones() - Vec3i::Unit(axis_));
-        add_point(site, of_->surface_reference(p), of_->surface.area(p), of_->surface.normal(p));
-    }
-    // New: quarters of the faces toward what is not the piece's, where they lie in the matter.
     for (std::size_t n = 0; n < particle_.size(); ++n) {
         const Vec3i site = site_of(n);
+        const std::vector<CutPlane> all = planes_of(site, ends);
         for (int c = 0; c < 8; ++c) {
             const Vec3i step = corner_step(c), low = site - step;
-            const CellId cell = lattice.cell_at(low);
-            if (cell < 0) continue;
+            if (lattice.cell_at(low) < 0) continue;
             for (int axis = 0; axis < 3; ++axis) {
-                const int out = 1 - 2 * step[axis];
-                if (number_at(site + out * Vec3i::Unit(axis)) >= 0) continue;
-                Vec3 place = (Vec3::Ones() + 2 * step.cast<double>()) / 4;
-                place[axis] = 0.5;
-                if (molded.is_rim(cell) && molded.at(cell, place).distance >= 0) continue;
+                const Vec3i way = (1 - 2 * step[axis]) * Vec3i::Unit(axis);
+                const CutPlane* plane = ends.toward(static_cast<int>(n), way);
+                if (plane == nullptr) continue;
+                Vec3 place = low.cast<double>() + (Vec3::Ones() + 2 * step.cast<double>()) / 4;
+                place[axis] = low[axis] + 0.5;
+                place -= (place - plane->place).dot(plane->normal) * plane->normal;
+                const bool is_out = std::ranges::any_of(all, [&](const CutPlane& other) {
+                    return (place - other.place).dot(other.normal) > kOn;
+                });
+                const Vec3i there = (place - kOn * plane->normal).array().floor().cast<int>();
+                const CellId cell = lattice.cell_at(there);
+                if (is_out || cell < 0 ||
+                    (molded.is_rim(cell) &&
+                     molded.at(cell, place - there.cast<double>()).distance >= 0)) {
+                    continue;
+                }
                 const Vec3i home = axis_ < 0 ? site : Vec3i(low + step[axis_] * Vec3i::Unit(axis_));
-                add_point(home, lattice.origin + a * (low.cast<double>() + place), a * a / 4,
-                          out * Vec3::Unit(axis));
+                add_point(home, lattice.origin + a * place,
+                          plane->normal.dot(way.cast<double>()) * a * a / 4, plane->normal);
             }
         }
     }
+}
+
+// Of one of its cells.
+std::vector<CutPlane> ThinPiece::planes_of(const Vec3i& cell, const ThinEnds& ends) const {
+    const Vec3i far = axis_ < 0 ? Vec3i(Vec3i::Zero()) : Vec3i(Vec3i::Ones() - Vec3i::Unit(axis_));
+    std::vector<int> own, beside;
+    for (int k = -1; k <= 1 + far.z(); ++k) {
+        for (int j = -1; j <= 1 + far.y(); ++j) {
+            for (int i = -1; i <= 1 + far.x(); ++i) {
+                const Vec3i step(i, j, k);
+                const int number = number_at(cell + step);
+                if (number < 0) continue;
+                const bool is_own = (step.array() >= 0).all() && (far - step).minCoeff() >= 0;
+                (is_own ? own : beside).push_back(number);
+            }
+        }
+    }
+    return ends.around(cell.cast<double>() + 0.5 * far.cast<double>(), own, beside);
+}
+
+void ThinPiece::find_ends(const ThinEnds& ends) {
+    const Lattice& lattice = matter_.lattice;
+    const Vec3 origin = (lattice.origin - of_->lattice.origin) / lattice.spacing;
+    std::vector<std::vector<CutSurface::Plane>> planes(matter_.cell_fill.size());
+    for (const CellRun& run : lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            const Vec3i cell(run.i + n, run.j, run.k);
+            const Vec3 low = cell.cast<double>() + origin;
+            for (const CutPlane& plane : planes_of(cell, ends)) {
+                planes[std::size_t(run.first + n)].push_back(
+                    {plane.normal, plane.normal.dot(low - plane.place)});
+            }
+        }
+    }
+    ends_ = std::make_shared<const CutSurface>(std::move(planes));
 }
 
 void ThinPiece::follow() {

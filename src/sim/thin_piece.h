@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A piece in which blades have left no whole cell, as contact in motion has it: a body of its own.
-// Its new surface runs half-way to the particles that are not the piece's, wherever between them
-// the blade went, and where there are none the surface as molded ends it. A layer of
+// It ends where the blades went (sim/thin_ends.h), and else by the surface as molded. A layer of
 // particles has the cells between them, half a spacing to either side; what else there may be has a
-// cell about each particle. Corners of these cells, which are no particles, follow the nearest of
-// the piece's,
+// cell about each particle. Where it reaches beyond these they go on as they are. Corners of these
+// cells, which are no particles, follow the nearest of the piece's,
 //
 //     x = sum_p w_p x_p + h n,   n = c sqrt((1 + b^2) / (c.c + b^2)),   c = t_1 x t_2,
 //     t_i = sum_p c_ip x_p,   b = 0.3:
@@ -25,8 +24,11 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "sim/contact_side.h"
 #include "sim/contact_sums.h"
+#include "sim/cut_surface.h"
 #include "sim/rest_surface.h"
+#include "sim/thin_ends.h"
 
 namespace swage {
 
@@ -45,6 +47,9 @@ class ThinPiece {
     // Its cells, where they were when last asked to follow the particles.
     Aggregate& matter() { return matter_; }
     void follow();
+    std::unique_ptr<ContactSide> contact_side() {
+        return std::make_unique<ContactSide>(matter_, molded_, ends_);
+    }
 
     // As forces [N] on its corners what does the same to their speeds as those on the particles do.
     Vec3Array& begin_forces(const Vec3Array& of);
@@ -76,7 +81,10 @@ class ThinPiece {
     bool add_corner(std::size_t corner);
     bool add_corner(const Vec3& place, double reach, ParticleId own);
     void add_point(const Vec3i& cell, const Vec3& at, double area, const Vec3& normal);
-    void add_surface(const RestSurface& molded);
+    void add_molded(const ThinEnds& ends);
+    void add_new(const ThinEnds& ends, const RestSurface& molded);
+    std::vector<CutPlane> planes_of(const Vec3i& cell, const ThinEnds& ends) const;
+    void find_ends(const ThinEnds& ends);
     // Of what the particles have a corner's middle and t_1, t_2.
     struct Blend {
         Vec3 middle, first, second;
@@ -100,6 +108,8 @@ class ThinPiece {
     std::vector<std::pair<std::uint64_t, int>> by_site_;  // key_of(); number in particle_
     int axis_ = -1, layer_ = 0;  // across which it is a layer, and where on it; -1: it is none
     Aggregate matter_;
+    std::shared_ptr<const RestSurface> molded_;  // of what it has of the surface as molded
+    std::shared_ptr<const CutSurface> ends_;     // of its cells
     std::vector<Share> share_;
     std::vector<Corner> corner_;
     std::vector<Frame> frame_;

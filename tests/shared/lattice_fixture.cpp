@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/shared/lattice_fixture.h"
 
+#include "matter/particle_site.h"
 #include "matter/point_side.h"
 
 namespace swage::test {
@@ -81,13 +82,8 @@ void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
             if (!crosses || (where && !where(0.5 * (a + b)))) continue;
             m.connection[span.direction].weight.set(span.lower + n, 0);
             const double share = std::clamp(normal.dot(point - a) / normal.dot(b - a), 0.0, 1.0);
-            const Vec3 from = m.particle_reference.at(span.lower + n),
-                       to = m.particle_reference.at(span.upper + n);
-            const Vec3 at = (from + share * (to - from) - m.lattice.origin) / m.lattice.spacing;
-            const auto in_floats = [](const Vec3& v) {
-                return std::array<float, 3>{float(v.x()), float(v.y()), float(v.z())};
-            };
-            m.cut.push_back({in_floats(at), in_floats(normal)});
+            m.cut.push_back(cut_point(lattice_site(m, span.lower + n),
+                                      lattice_site(m, span.upper + n), float(share), normal));
         }
     }
     keep_sides(m, sides);

@@ -70,6 +70,7 @@ void fall_on_each_other(int cells, double shift, Solver solver, int frames) {
     Aggregate cube = sliced(cells, {-0.5 + shift, 0.5 + shift, 1.5 + shift});
     const Pieces pieces = find_pieces(cube);
     const double lower = slice_of(cube, pieces, 1).place, upper = slice_of(cube, pieces, 2).place;
+    const double above = lower - (-0.5 + shift) * kCell;  // the blade's path: its particles
     move(cube, pieces, 0, Vec3(2, 0.31, 0), Vec3::Zero());
     move(cube, pieces, 1, Vec3(0, 0.15 - lower, 0), Vec3::Zero());
     move(cube, pieces, 2, Vec3(0.02, 0.35 - upper, 0.01), Vec3::Zero());
@@ -93,10 +94,10 @@ void fall_on_each_other(int cells, double shift, Solver solver, int frames) {
                   << " (" << high.low << " to " << high.high << "), nearest " << nearest
                   << ", lowest " << lowest << ", remainder " << r.remainder << " of "
                   << r.gravity_work);
-    CHECK(high.place - low.place == Approx(kCell).margin(0.1 * kCell));
-    CHECK(low.place == Approx(0.5 * kCell).margin(0.1 * kCell));
+    CHECK(high.place - low.place == Approx(kCell).margin(0.05 * kCell));
+    CHECK(low.place == Approx(above).margin(0.05 * kCell));
     CHECK(nearest > 0.5 * kCell);
-    CHECK(lowest > 0);
+    CHECK(lowest - above > -0.25 * kCell);
     CHECK(std::abs(r.remainder) < 0.01 * r.gravity_work);
 }
 
@@ -314,4 +315,60 @@ TEST_CASE("upright slices without a whole cell fall in on themselves and keep th
     }
     INFO("remainder " << r.remainder << " of " << r.gravity_work);
     CHECK(std::abs(r.remainder) < 0.01 * r.gravity_work);
+}
+
+// Nothing but contact could hold it.
+TEST_CASE("a slice without a whole cell flies off what it was cut from, however thin it is") {
+    const double thickness = GENERATE(0.05, 0.1, 0.15, 0.3, 0.5, 0.7, 0.95);
+    const double angle = GENERATE(0., 0.05);
+    CAPTURE(thickness, angle);
+    if (angle > 0 && std::abs(thickness - 0.5) > 0.25) return;  // a wedge, or two layers
+    Aggregate cube = make_block(6, 6, 6, kCell, rubber());
+    const Vec3 normal(std::sin(angle), std::cos(angle), 0);
+    sever_plane(cube, Vec3(0, (3 - thickness) * kCell, 0), normal);
+    const Pieces pieces = find_pieces(cube);
+    REQUIRE(pieces.count == 2);
+    REQUIRE(thin_pieces(cube).size() == 1);
+    const double place = slice_of(cube, pieces, 1).place;
+    move(cube, pieces, 1, Vec3::Zero(), 0.2 * normal);
+    SimSettings settings = motion_settings();
+    settings.self_contact = true;
+    const Apparatus nothing;
+    Simulation simulation(cube, nothing, settings);
+    for (int f = 0; f < 4; ++f) simulation.advance(still(0.01 * f), still(0.01 * (f + 1)));
+    CHECK(slice_of(cube, pieces, 1).place - place == Approx(0.04 * 0.2 * normal.y()).epsilon(0.01));
+}
+
+TEST_CASE("a stack of slices, some without a whole cell, stays as high as it was cut") {
+    // Where the blades went, of a cube from -3 to 3.
+    const std::vector<double> places =
+        GENERATE(std::vector<double>{-2.05}, std::vector<double>{-1.8, -0.8},
+                 std::vector<double>{-1.5, -0.65, 0.9}, std::vector<double>{-2.3, -1.35, -0.35},
+                 std::vector<double>{-0.9, 0.8});
+    INFO("first " << places[0] << " of " << places.size());
+    Material firm = rubber();
+    firm.young_modulus = 1e7;
+    Aggregate cube = make_block(6, 6, 6, kCell, firm);
+    for (double place : places) sever_plane(cube, Vec3(0, place * kCell, 0), Vec3::UnitY());
+    const Pieces pieces = find_pieces(cube);
+    REQUIRE(pieces.count == int(places.size()) + 1);
+    REQUIRE(!thin_pieces(cube).empty());
+    for (int piece = 0; piece < pieces.count; ++piece) {
+        move(cube, pieces, piece, Vec3(0, 0.3, 0), Vec3::Zero());
+    }
+    std::vector<Slice> before;
+    for (int n = 0; n < pieces.count; ++n) before.push_back(slice_of(cube, pieces, n));
+    SimSettings settings = motion_settings();
+    settings.self_contact = true;
+    settings.gravity = Vec3(0, -9.81, 0);
+    const Apparatus floor = floor_with(0.5);
+    Simulation simulation(cube, floor, settings);
+    for (int f = 0; f < 20; ++f) simulation.advance(floor_at(0.02 * f), floor_at(0.02 * (f + 1)));
+    for (int n = 0; n < pieces.count; ++n) {
+        const Slice slice = slice_of(cube, pieces, n);
+        CAPTURE(n);
+        CHECK(slice.place == Approx(before[std::size_t(n)].place).margin(0.05 * kCell));
+        CHECK(slice.low == Approx(before[std::size_t(n)].low).margin(0.1 * kCell));
+        CHECK(slice.high == Approx(before[std::size_t(n)].high).margin(0.1 * kCell));
+    }
 }
