@@ -62,7 +62,7 @@ class ContactSide {
     // `met`: the slope of that where a point that touches has met it, else zero. What has come in
     // on one side of a thin piece does not come out on the other.
     RestSurface::Depth depth(const Vec3i& site, CellId cell, const Vec3& place,
-                             const Eigen::Vector3f& met) const {
+                             const Eigen::Vector3f& met = Eigen::Vector3f::Zero()) const {
         if (is_thin()) return thin_depth(site, cell, place, met.cast<double>());
         if (cut_ != nullptr) return least_depth(site, cell, place);
         const bool inside = (place.array() >= 0).all() && (place.array() <= 1).all();
