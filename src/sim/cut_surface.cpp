@@ -132,6 +132,7 @@ CutSurface::CutSurface(std::vector<std::vector<Plane>> planes) : plane_(std::mov
     std::array<float, 8> deep;
     deep.fill(kDeep);
     corner_.assign(plane_.size(), deep);
+    bent_of_.assign(plane_.size(), -1);
     for (std::size_t cell = 0; cell < plane_.size(); ++cell) {
         slot_.push_back(plane_[cell].empty() ? -1 : static_cast<int>(cell));
         if (slot_.back() >= 0) skin_.push_back(static_cast<CellId>(cell));
