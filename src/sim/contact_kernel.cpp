@@ -336,7 +336,7 @@ struct ContactWay::Kernel {
             next.bound = 0;
             next.slope.setZero();
             if (f.history.touches) {
-                next.slope = contact.slope;
+                if (way.onto_->is_thin()) next.slope = contact.slope;
                 const Vec4 reach = vec4(f.reach);
                 next.place = contact.site.cast<double>() + contact.place;
                 next.reach = Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),

@@ -46,7 +46,8 @@ struct ContactMemory {
     // Share of its stiffness that is left since a cell was squeezed so thin that no step could have
     // followed the whole.
     double soft = 1;
-    Eigen::Vector3f slope = Eigen::Vector3f::Zero();  // of the depth; zero where it does not touch
+    // Of the depth in a thin piece; zero where it does not touch, or in others.
+    Eigen::Vector3f slope = Eigen::Vector3f::Zero();
     bool is_new = true;  // to the surfaces as they are: its depth is not known from before
 
     // It has become as soft where it is, which is counted once.
