@@ -19,7 +19,8 @@ struct Contact : CellPlace {
     std::array<int, 8> carrier{};
     std::array<float, 8> share{};
     Eigen::Vector3f slope = Eigen::Vector3f::Zero();  // of the depth, where it was last found
-    Vec3 dashed = Vec3::Zero();                       // what its dashpots did then [N]
+    float gap = 0;               // a hole here would pass whatever bytes it holds
+    Vec3 dashed = Vec3::Zero();  // what its dashpots did when last found [N]
 };
 
 // Contacts meet as a step has brought them; or they are where the last step that was kept has
