@@ -59,6 +59,7 @@ ExpressionReader ExpressionReader::repeated() const {
 ExpressionReader ExpressionReader::curved() const {
     ExpressionReader reader = *this;
     reader.add_name(kAlong);
+    reader.used_.clear();
     return reader;
 }
 

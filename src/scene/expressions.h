@@ -38,7 +38,7 @@ class ExpressionReader {
     void explain(const std::string& name, const std::string& why) { unseen_[name] = why; }
     // One for a part that is repeated: it sees which one it is.
     ExpressionReader repeated() const;
-    // One for an edge that is a curve: it sees how far along it is.
+    // One for an edge that is a curve: it sees how far along it is, and has named nothing yet.
     ExpressionReader curved() const;
 
     // Look up a number or an expression; `into` keeps its text. Return whether the key is there.

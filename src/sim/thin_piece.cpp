@@ -65,6 +65,7 @@ std::unique_ptr<ThinPiece> ThinPiece::find(const Aggregate& of, const RestSurfac
     piece->add_molded(ends);
     piece->molded_ = std::make_shared<const RestSurface>(piece->matter_, false);
     piece->add_new(ends, molded);
+    if (piece->matter_.surface.size() == 0) return nullptr;  // only corners that matter shares
     piece->follow();
     return piece;
 }

@@ -38,8 +38,9 @@ std::vector<std::vector<ParticleId>> thin_pieces(const Aggregate& matter);
 
 class ThinPiece {
   public:
-    // Null where the particles lie in a row, which does not tell how they turn. `of` must outlive
-    // it; `molded`: its surface.
+    // Null where the particles lie in a row, which does not tell how they turn, or have no surface
+    // on their side, as corners of cells that hold little. `of` must outlive it; `molded`: its
+    // surface.
     static std::unique_ptr<ThinPiece> find(const Aggregate& of, const RestSurface& molded,
                                            std::vector<ParticleId> particles);
 

@@ -61,8 +61,8 @@ struct BladePaths {
     std::vector<BladePath> path;
     bool has_folded = false;  // a sweep is neither
 };
-// `box`: of what may be parted. `tolerance`: of a plane, and a fiftieth of that of a relief, on
-// which a blade that comes back has other chords.
+// `box`: of what may be parted. `tolerance`: how far off a plane its triangles may be [m]; off each
+// other fifty times that, for a blade that comes back has other chords.
 BladePaths blade_paths(const std::vector<std::array<Vec3, 3>>& sweep, const Box& box,
                        double tolerance);
 

@@ -11,9 +11,6 @@ namespace swage {
 
 namespace {
 
-// Of the longest edge: those above are halved at once. A triangle's longest is halved before its
-// others then, as its halves' are no longer than it.
-constexpr double kNearLongest = 0.7;
 // A halved triangle's new edges are at most 0.87 of its longest: where the longest does not become
 // so much shorter, numbers have no places left for its middle.
 constexpr double kShorter = 0.9;

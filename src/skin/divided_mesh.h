@@ -16,6 +16,10 @@ namespace swage {
 // numbers, and a mesh without such edges is left as it is.
 TriMesh divide_edges(const TriMesh& mesh, double longest);
 
+// Of a triangle's, or a mesh's, longest edge: those above are halved with it, so that a triangle's
+// longest is halved before its others.
+inline constexpr double kNearLongest = 0.7;
+
 // Halves those edges, of which the lower vertex comes first, at once. `halved`: what each new
 // vertex halves, in their order. Its smooth groups are to have their normals.
 TriMesh halve_edges(const TriMesh& mesh, const std::function<bool(int, int)>& is_long,

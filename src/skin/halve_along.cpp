@@ -15,8 +15,6 @@ namespace swage {
 
 namespace {
 
-// Of a triangle's longest edge: those above are halved with it.
-constexpr double kNearLongest = 0.7;
 constexpr int kRounds = 20;  // a millionth of what was there
 
 std::set<Ends> long_edges(const BladePath& path, double longest, const TriMesh& mesh,

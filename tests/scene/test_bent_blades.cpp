@@ -74,3 +74,15 @@ TEST_CASE("the corer cuts out a plug of its outline, and lifts it") {
         CHECK((plug.translation - start.translation).y() > 0.2);
     }
 }
+
+TEST_CASE("the carver tells of a bow that runs into a grip, on either side") {
+    const Aggregate body = test::make_block(8, 6, 8, 0.05, Material{});
+    for (const double bow : {-0.4, 0.4}) {
+        const double grip = 0.2, room = 0.5 - grip - std::abs(bow);
+        CHECK(!at_bar("carve", {{"bow", bow}, {"grip_length", grip}}, body).notes.empty());
+        CHECK(room < 0);
+        const double away = (bow < 0 ? 1 : -1) * 0.12;
+        CHECK(at_bar("carve", {{"bow", bow}, {"grip_length", grip}, {"place", away}}, body)
+                  .notes.empty());
+    }
+}

@@ -270,6 +270,11 @@ TEST_CASE("mistakes in machine files are named at their letter") {
         {"edge of a point that does not change",
          kHead + kGrip + "[[blade]]\nname = \"b\"\nedge = [0, 0, \"length\"]\n",
          {"11:8: a single point is no edge: give two, or let it change with `along`"}},
+        {"edge of a point that does not change, after one that does",
+         kHead + kGrip +
+             "[[blade]]\nname = \"a\"\nedge = [0, 0, \"along\"]\n"
+             "[[blade]]\nname = \"b\"\nedge = [0, 0, \"length\"]\n",
+         {"14:8: a single point is no edge"}},
         {"points of an edge that has its own",
          kHead + kGrip + "[[blade]]\nname = \"b\"\nedge = [[0, 0, 0], [0, 0, 1]]\npoints = 9\n",
          {"12:10: warning: points has no effect: this edge is given by its points"}},

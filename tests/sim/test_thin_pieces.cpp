@@ -372,3 +372,29 @@ TEST_CASE("a stack of slices, some without a whole cell, stays as high as it was
         CHECK(slice.high == Approx(before[std::size_t(n)].high).margin(0.1 * kCell));
     }
 }
+
+TEST_CASE("corners without a surface of their own that a blade parts do not fall through a floor") {
+    // Half of the ball's lowest cells is empty: below the blade there is no surface at all.
+    Aggregate ball = make_shape([](const Vec3& x) { return x.norm() - 4.5 * kCell; },
+                                Vec3::Constant(-5 * kCell), Vec3i(10, 10, 10), kCell);
+    ball.material = rubber();
+    sever_plane(ball, Vec3(0, -4.97 * kCell, 0), Vec3::UnitY());
+    const Pieces pieces = find_pieces(ball);
+    REQUIRE(pieces.count == 2);
+    for (std::size_t p = 0; p < ball.particle_count(); ++p) {
+        ball.particle_position.add(p, Vec3(0, 4.6 * kCell, 0));
+    }
+    SimSettings settings = motion_settings();
+    settings.gravity = Vec3(0, -9.81, 0);
+    settings.self_contact = true;
+    const Apparatus floor = floor_with(0.3);
+    Simulation simulation(ball, floor, settings);
+    for (int frame = 0; frame < 10; ++frame) {
+        simulation.advance(floor_at(0.02 * frame), floor_at(0.02 * (frame + 1)));
+    }
+    double low = 1;
+    for (std::size_t p = 0; p < ball.particle_count(); ++p) {
+        low = std::min(low, ball.particle_position.at(p).y());
+    }
+    CHECK(low > -kCell);  // fallen freely it is at -2 cells
+}

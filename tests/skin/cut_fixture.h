@@ -125,6 +125,14 @@ struct Fixture {
         follow();
     }
     void follow() { skin_positions(mount, matter, position); }
+    // Round an axis along z, by 1.2 rad in all.
+    void bend() {
+        test::deform(matter, [](const Vec3& p) -> Vec3 {
+            const double t = 1.2 * p.x(), r = 1 / 1.2 - p.y();
+            return {r * std::sin(t), 1 / 1.2 - r * std::cos(t), p.z()};
+        });
+        follow();
+    }
     CutResult cut(const Sweep& sweep, const Insides& insides = {}) {
         const CutResult result = cut_skin(mesh, position, mount, matter, sweep, insides);
         follow();

@@ -172,12 +172,7 @@ TEST_CASE("halves of a cut along a path that bends follow the matter on their si
 
 TEST_CASE("a cut along a path that bends is not to be seen before the matter is severed") {
     Fixture f(bar());
-    const auto map = [](const Vec3& p) -> Vec3 {
-        const double t = 1.2 * p.x(), r = 1 / 1.2 - p.y();
-        return {r * std::sin(t), 1 / 1.2 - r * std::cos(t), p.z()};
-    };
-    test::deform(f.matter, map);
-    f.follow();
+    f.bend();
     const std::vector<Vec3> before = f.position;
     const BentPath path = paths()[0];
     f.cut(sweep_of(path));

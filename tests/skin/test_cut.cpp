@@ -89,12 +89,7 @@ TEST_CASE("a cut through gives closed halves whose volumes add up to the whole")
 
 TEST_CASE("a cut is not to be seen before the matter is severed") {
     Fixture f(bar());
-    const auto map = [](const Vec3& p) -> Vec3 {
-        const double t = 1.2 * p.x(), r = 1 / 1.2 - p.y();
-        return {r * std::sin(t), 1 / 1.2 - r * std::cos(t), p.z()};
-    };
-    test::deform(f.matter, map);
-    f.follow();
+    f.bend();
     const std::vector<Vec3> before = f.position;
     const Vec3 normal = Vec3(1, .3, .5).normalized(), point(0.02, 0.01, 0);
     f.cut(sweep_of(point, normal, 3));
