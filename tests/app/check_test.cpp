@@ -15,7 +15,7 @@
 
 namespace fs = std::filesystem;
 
-TEST_CASE("the steps that a run takes lie in the range that check tells") {
+TEST_CASE("the steps that a run takes lie in the range that check tells", "[stress]") {
     const Scratch scratch;
     run_swage({"make", "bar", "--length", "10 cm", "--division", "20", "--out", "bar.obj"},
               scratch.path());

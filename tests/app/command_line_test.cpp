@@ -194,7 +194,7 @@ TEST_CASE("check tells what a run will cost, and the run costs it") {
     }
 }
 
-TEST_CASE("a skin is closed where matter breaks, also where a blade has cut before") {
+TEST_CASE("a skin is closed where matter breaks, also where a blade has cut before", "[stress]") {
     const Scratch scratch;
     const fs::path mesh = scratch.path() / "bar.obj", scene = scratch.path() / "glass.toml";
     run_swage({"make", "bar", "--length", "10 cm", "--out", mesh.string()});

@@ -17,7 +17,7 @@
 
 namespace fs = std::filesystem;
 
-TEST_CASE("a cut through what has flowed unevenly has flat faces") {
+TEST_CASE("a cut through what has flowed unevenly has flat faces", "[stress]") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "gear.toml", out = scratch.path() / "out";
     put_text(scene, "[mesh]\nfile = \"" SWAGE_SOURCE_DIR

@@ -91,7 +91,7 @@ Outcome end_once_kept(int signal, const fs::path& scene, const fs::path& out,
 
 }  // namespace
 
-TEST_CASE("of a run that is done only what was changed is worked, to the same bytes") {
+TEST_CASE("of a run that is done only what was changed is worked, to the same bytes", "[stress]") {
     const std::string lead = kMesh + metal("") + kOutput;
     const auto& [name, line] = GENERATE_COPY(table<std::string, Line>({
         {"mounted, fields, meshes of frames", {lead, kAtRest, kAtRestToo}},
@@ -196,7 +196,7 @@ TEST_CASE("a run that ended within its first stage is gone on with after a later
     check_as_from_nothing(scene, out, scratch.path());
 }
 
-TEST_CASE("a run that is replaced stays whole until the new one is") {
+TEST_CASE("a run that is replaced stays whole until the new one is", "[stress]") {
     const DoneRun done(kMesh + metal("") + kOutput, kAtRest);
     const auto before = files_below(done.out);
     const fs::path replaced = done.out / "replaced";
@@ -277,7 +277,7 @@ TEST_CASE("meshes of stages that are kept have their materials, however they are
     done.check();
 }
 
-TEST_CASE("a stage that ended early leaves no materials beside those of its end") {
+TEST_CASE("a stage that ended early leaves no materials beside those of its end", "[stress]") {
     const Scratch scratch;
     const fs::path out = scratch.path() / "run", meshes = out / "meshes";
     const fs::path scene = put_scene(
@@ -301,7 +301,8 @@ TEST_CASE("a run that is asked to be fresh throws away what it replaced, too") {
     done.check();
 }
 
-TEST_CASE("what was kept of a stage and is damaged is told, and an earlier one serves") {
+TEST_CASE("what was kept of a stage and is damaged is told, and an earlier one serves",
+          "[stress]") {
     const DoneRun done(kMesh + metal("") + kOutput, kAtRest);
     const fs::path copy = done.scratch.path() / "copy";
     fs::copy(done.out, copy, fs::copy_options::recursive);

@@ -52,7 +52,7 @@ std::map<std::string, std::string> hanging_gnuplot(const fs::path& folder,
 
 }  // namespace
 
-TEST_CASE("a run that is asked to stop leaves only whole files within two seconds") {
+TEST_CASE("a run that is asked to stop leaves only whole files within two seconds", "[stress]") {
     const int signal = GENERATE(SIGTERM, SIGINT, SIGHUP);
     const bool while_drawing = GENERATE(false, true);
     const Scratch scratch;

@@ -91,7 +91,7 @@ struct Line {
 
 }  // namespace
 
-TEST_CASE("the number of a piece is that of its object, of however many shells it is") {
+TEST_CASE("the number of a piece is that of its object, of however many shells it is", "[stress]") {
     // A part in a gap of less than a cell above another: both are one body of two shells.
     const std::string bar = box_obj({0, 0, 0}, {.3, .06, .06}, 0, "bar"),
                       stud = bar + box_obj({.262, .0605, .012}, {.295, .09, .048}, 8, "stud");

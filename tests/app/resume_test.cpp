@@ -43,7 +43,8 @@ Outcome end_in_second_stage(int signal, const fs::path& scene, const fs::path& o
 }  // namespace
 
 TEST_CASE(
-    "a run that ended early and goes on leaves what one leaves that went through, to the byte") {
+    "a run that ended early and goes on leaves what one leaves that went through, to the byte",
+    "[stress]") {
     const auto& [name, text] = GENERATE(table<std::string, std::string>({
         {"flows, is cut", kMesh + metal("") + worked()},
         {"springs", kMesh + metal("mechanics = \"springs\"\n") + worked()},
@@ -117,7 +118,8 @@ TEST_CASE("a run that was killed or interrupted within a stage goes on from the 
     check_goes_through(scene, whole, out, "goes on after stage 1 of 2, frame 3");
 }
 
-TEST_CASE("a run that is to be fresh begins anew, and so does one whose checkpoint is damaged") {
+TEST_CASE("a run that is to be fresh begins anew, and so does one whose checkpoint is damaged",
+          "[stress]") {
     const Scratch scratch;
     const fs::path scene = put_scene(scratch.path(), kMesh + metal("") + kTwo),
                    whole = scratch.path() / "whole", out = scratch.path() / "run";
@@ -191,7 +193,8 @@ TEST_CASE("a run goes on where its checkpoint finds no room") {
 }
 
 TEST_CASE(
-    "where later stages were changed a run goes on from those before them when it is asked to") {
+    "where later stages were changed a run goes on from those before them when it is asked to",
+    "[stress]") {
     const Scratch scratch;
     const std::string head = kMesh + metal("") + "[output]\nmeshes_per_frame = true\n",
                       first = "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 2\n",

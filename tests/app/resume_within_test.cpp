@@ -81,7 +81,7 @@ const std::string kBends = stage("bend", "angle = \"40 deg\"\nframes = 10");
 
 }  // namespace
 
-TEST_CASE("what is at rest goes on from within a stage, to the byte") {
+TEST_CASE("what is at rest goes on from within a stage, to the byte", "[stress]") {
     const std::string lead = kMesh + metal("") + kOutput,
                       ice = kMesh + "[material]\nname = \"ice\"\n" + kFiner + kOutput;
     const auto& [name, text] = GENERATE_COPY(table<std::string, std::string>({
@@ -167,7 +167,7 @@ TEST_CASE("a run goes on within whichever stage it was at") {
                   {6, 14, 15, 19});
 }
 
-TEST_CASE("what broke and met itself in the stage before goes on within the next") {
+TEST_CASE("what broke and met itself in the stage before goes on within the next", "[stress]") {
     const std::string falls_on = floor(8) + "self_contact = true\n";
     check_goes_on(kMesh + falls(8) + kBrittle + kFiner + kOutput + falls_on + falls_on,
                   {5, 11, 14});

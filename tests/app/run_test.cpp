@@ -296,7 +296,7 @@ TEST_CASE("meshes are written for every frame when the scene asks for it") {
     CHECK(bytes_of(run / "meshes/1-bend/frame_0003.ply") == bytes_of(run / "meshes/1-bend.ply"));
 }
 
-TEST_CASE("the skin of clay pressed to a quarter of its height keeps the volume") {
+TEST_CASE("the skin of clay pressed to a quarter of its height keeps the volume", "[stress]") {
     const Scratch scratch;
     const fs::path run = scratch.path() / "run";
     const fs::path scene = fs::path(SWAGE_SOURCE_DIR) / "assets/scenes/clay-press.toml";

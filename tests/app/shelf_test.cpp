@@ -127,7 +127,8 @@ TEST_CASE("what next to nothing pushes comes down onto its rests, however few po
     }
 }
 
-TEST_CASE("what tools have let go of lies on them by its weight, hard as they pressed it") {
+TEST_CASE("what tools have let go of lies on them by its weight, hard as they pressed it",
+          "[stress]") {
     const auto [machine, borne_by] = GENERATE(table<std::string, std::string>({
         {"machine = \"press\"\ndepth = 0.05\nframes = 12\n", "anvil"},
         {"machine = \"bend\"\nangle = \"20 deg\"\nframes = 20\n", "support"},

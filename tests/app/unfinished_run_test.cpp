@@ -211,7 +211,7 @@ constexpr const char* kTip = "[[probe]]\nname = \"tip\"\nat = [1, 1, 1]\n";
 
 }  // namespace
 
-TEST_CASE("of a stage that stops all is told of one time, its first frame too") {
+TEST_CASE("of a stage that stops all is told of one time, its first frame too", "[stress]") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "scene.toml", run = scratch.path() / "run";
     run_swage({"make", "bar", "--length", "20 cm", "--out", "bar.obj"}, scratch.path());

@@ -79,7 +79,7 @@ TEST_CASE("every shape is one closed outward surface with even triangles") {
     }
 }
 
-TEST_CASE("a gear of any width and bore crosses itself nowhere") {
+TEST_CASE("a gear of any width and bore crosses itself nowhere", "[stress]") {
     for (const double width : {0.001, 0.01, 0.03, 0.06, 0.1, 0.4}) {
         for (const double bore : {0.006, 0.02, 0.05}) {
             INFO("width " << width << ", bore " << bore);

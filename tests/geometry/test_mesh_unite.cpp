@@ -94,7 +94,8 @@ TriMesh tube_of(int sides, double outer, double inner) {
 
 }  // namespace
 
-TEST_CASE("a turned tube has in common with a rod of its own outer radius a ring of it") {
+TEST_CASE("a turned tube has in common with a rod of its own outer radius a ring of it",
+          "[stress]") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> any(-1, 1);
     for (int round = 0; round < 12; ++round) {

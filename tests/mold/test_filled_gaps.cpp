@@ -219,7 +219,7 @@ TEST_CASE("what has no gap is not said to have one, however thin or askew") {
     CHECK_FALSE(tells(groove));
 }
 
-TEST_CASE("a gap aslant to the cells is told of as far as they join its sides") {
+TEST_CASE("a gap aslant to the cells is told of as far as they join its sides", "[stress]") {
     const auto normal_to = [](const Vec3& way) {
         return Pose{Quat(Quat::FromTwoVectors(Vec3(0, 1, 0), way)), Vec3(0.3, 0.2, 0.1)};
     };

@@ -56,7 +56,7 @@ TEST_CASE("volume, mass, surface and centroid are the mesh's at any spacing") {
     }
 }
 
-TEST_CASE("meshes of the project and of the common data keep their volume") {
+TEST_CASE("meshes of the project and of the common data keep their volume", "[stress]") {
     int read = 0;
     for (const char* folder : {"/assets/meshes", "/../shared/data/meshes"}) {
         const std::filesystem::path path = std::string(SWAGE_SOURCE_DIR) + folder;

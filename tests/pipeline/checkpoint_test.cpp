@@ -216,7 +216,8 @@ TEST_CASE("images are kept once, and are one again") {
           piece.look->mesh().material[0].embedded_texture);
 }
 
-TEST_CASE("a checkpoint that is damaged, cut short or foreign is told from a whole one") {
+TEST_CASE("a checkpoint that is damaged, cut short or foreign is told from a whole one",
+          "[stress]") {
     const Scratch scratch;
     const fs::path file = scratch.path() / "checkpoint.bin";
     std::string why;

@@ -60,7 +60,8 @@ void check_near(const char* what, double told, double wanted, double factor) {
 
 }  // namespace
 
-TEST_CASE("what larger cells tell of a run is what its own would, and all that is told of these") {
+TEST_CASE("what larger cells tell of a run is what its own would, and all that is told of these",
+          "[stress]") {
     for (const auto& [shape, material, stage] :
          {std::tuple("wrench", "steel_4340", kBend), std::tuple("calf", "rubber", kFloor),
           std::tuple("calf", "copper", kFloor), std::tuple("sphere", "clay", kPress)}) {
@@ -89,7 +90,8 @@ TEST_CASE("what larger cells tell of a run is what its own would, and all that i
     }
 }
 
-TEST_CASE("a machine is judged by the cells that are asked for where larger ones are counted") {
+TEST_CASE("a machine is judged by the cells that are asked for where larger ones are counted",
+          "[stress]") {
     // A radius of 0.26 cells, which points of larger cells pass by on both sides.
     CountedScene needle("bar", "rubber",
                         "\"shelf\"\nradius = \"0.025 mm\"\ngravity = \"9.81 m/s2\"\n");
@@ -126,7 +128,8 @@ TEST_CASE("a machine is judged by the cells that are asked for where larger ones
     CHECK(later.cost(24, kFew).warning.bodies.size() == 1);
 }
 
-TEST_CASE("nothing that is told of a run drops, or leaps, where its cells get too many to count") {
+TEST_CASE("nothing that is told of a run drops, or leaps, where its cells get too many to count",
+          "[stress]") {
     for (const auto& [material, stage] :
          {std::pair("steel_4340", kBend), std::pair("rubber", kFloor)}) {
         CountedScene run("wrench", material, stage);

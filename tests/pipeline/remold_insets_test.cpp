@@ -92,7 +92,7 @@ TEST_CASE("what is molded anew unloaded has as much of each material, however of
     }
 }
 
-TEST_CASE("of what was bent each material has the room that it was bent to") {
+TEST_CASE("of what was bent each material has the room that it was bent to", "[stress]") {
     const int finer = GENERATE(0, 1);
     const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::boundary);
     for (const InsetSpec& inset : {core(), layer(), lump()}) {
@@ -166,7 +166,8 @@ void part(WorkPiece& piece, const Vec3& point, const Vec3& normal, const Vec3& a
 
 }  // namespace
 
-TEST_CASE("what was cut through its insets is molded anew with them, closed where they were cut") {
+TEST_CASE("what was cut through its insets is molded anew with them, closed where they were cut",
+          "[stress]") {
     const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::boundary);
     const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();
     for (const InsetSpec& inset : {core(), layer(), lump()}) {

@@ -108,7 +108,7 @@ TEST_CASE("parts of one body press on each other as two bodies do") {
     CHECK(on_upper == Approx(0.5 * k * depth).epsilon(0.03));
 }
 
-TEST_CASE("a small block presses on a face alike on its points and between them") {
+TEST_CASE("a small block presses on a face alike on its points and between them", "[stress]") {
     Material m = kSpringy;
     m.friction = 0;
     Aggregate big = make_block(6, 3, 6, 0.1, m), small = make_block(2, 2, 2, 0.02, m);
@@ -247,7 +247,7 @@ TEST_CASE("what lies pressed at the start presses as much after its first step i
     CHECK(push() == first);
 }
 
-TEST_CASE("a block slides over another's lattice without rattling") {
+TEST_CASE("a block slides over another's lattice without rattling", "[stress]") {
     // The lower body's lattice stands along the surface, then obliquely to it.
     for (double turn : {0.0, 0.35}) {
         const Vec3 up(-std::sin(turn), std::cos(turn), 0), along(up.y(), -up.x(), 0);

@@ -131,7 +131,8 @@ TEST_CASE("particles that are all that is left of cells do not fall through anot
     CHECK(std::abs(r.remainder) < 0.01 * block.mass() * 9.81 * 0.3);
 }
 
-TEST_CASE("particles that are all that is left of cells do not pass through what they broke off") {
+TEST_CASE("particles that are all that is left of cells do not pass through what they broke off",
+          "[stress]") {
     for (Solver solver : {Solver::explicit_steps, Solver::energy_stepped}) {
         Aggregate block = make_block(3, 5, 3, 0.1, kSpringy);
         break_layer(block, 0);  // a sheet of particles below

@@ -153,7 +153,8 @@ TEST_CASE("a core that does not break carries on through the cracks of its shell
 }
 
 // Nothing of the shell's own stiffness may stay with the core.
-TEST_CASE("a soft core of a stiff shell carries by its own stiffness once that has parted") {
+TEST_CASE("a soft core of a stiff shell carries by its own stiffness once that has parted",
+          "[stress]") {
     Material soft = kTough;
     soft.young_modulus = 0.1 * kModulus;
     for (const bool askew : {false, true}) {
@@ -239,7 +240,7 @@ TEST_CASE("of what belongs to two materials each has its part") {
     CHECK(held.snaps_at(1, on - 1) == weak.broken);
 }
 
-TEST_CASE("a composite that breaks in motion keeps its books, and the same bytes") {
+TEST_CASE("a composite that breaks in motion keeps its books, and the same bytes", "[stress]") {
     std::vector<std::uint64_t> hash;
     for (int threads : {1, 2}) {
         set_thread_count(threads);

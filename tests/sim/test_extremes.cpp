@@ -90,7 +90,7 @@ void check_shape(const Aggregate& m, double most = 0.03) {
 
 }  // namespace
 
-TEST_CASE("extremes: half of a body is a million times stiffer") {
+TEST_CASE("extremes: half of a body is a million times stiffer", "[stress]") {
     const Solver solver = GENERATE(from_range(kAll));
     Aggregate m = block(damping_for(solver));
     m.inset.push_back(m.material);
@@ -128,7 +128,8 @@ TEST_CASE("extremes: two particles at one place come apart") {
     }
 }
 
-TEST_CASE("extremes: crushed a hundred times, or turned inside out, a body finds its shape") {
+TEST_CASE("extremes: crushed a hundred times, or turned inside out, a body finds its shape",
+          "[stress]") {
     struct Kind {
         const char* name;
         Mechanics mechanics;
@@ -334,7 +335,7 @@ TEST_CASE("extremes: explicit steps that nothing helps pass on to implicit ones"
     }
 }
 
-TEST_CASE("extremes: ten thousand contacts at once") {
+TEST_CASE("extremes: ten thousand contacts at once", "[stress]") {
     Material material = kSpringy;
     material.damping_ratio = 0.1;
     material.restitution = 0.5;

@@ -100,7 +100,8 @@ TEST_CASE("a grip that stands has not moved halfway, however it is turned") {
     CHECK(farthest > 0);
 }
 
-TEST_CASE("what a grip speeds up evenly bears its mass times that, however few the frames") {
+TEST_CASE("what a grip speeds up evenly bears its mass times that, however few the frames",
+          "[stress]") {
     constexpr double kLeg = 0.1, kSpeedUp = 10;  // [m/s2]
     const Material rubber{
         .young_modulus = 1e7, .poisson_ratio = 0.3, .density = 1000, .damping_ratio = 0.05};

@@ -168,7 +168,7 @@ TEST_CASE("a strut that is pressed on after a pause is seen to buckle") {
     CHECK(strut.press(1.15, 0.25));
 }
 
-TEST_CASE("a strut between smooth plates buckles at the load that is theirs") {
+TEST_CASE("a strut between smooth plates buckles at the load that is theirs", "[stress]") {
     const int cells = GENERATE(2, 3);
     INFO(cells << " cells across");
     Strut strut(cells);

@@ -178,7 +178,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("what has broken and lies on itself makes no energy where a stage begins") {
+TEST_CASE("what has broken and lies on itself makes no energy where a stage begins", "[stress]") {
     Material weak = brittle();  // it breaks to pieces while these still meet
     weak.strength = 1e4;
     weak.toughness = 1;

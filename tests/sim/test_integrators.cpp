@@ -279,7 +279,8 @@ TEST_CASE(
     CHECK(passed(false) == Approx(alone).epsilon(1e-9));
 }
 
-TEST_CASE("steps that energy chooses follow what a drive does within a frame, also after a pause") {
+TEST_CASE("steps that energy chooses follow what a drive does within a frame, also after a pause",
+          "[stress]") {
     Aggregate start = make_block(3, 3, 3, 0.01, kSpringy);
     Apparatus pull;
     for (int side : {-1, 1}) {
@@ -383,8 +384,8 @@ TEST_CASE("every integrator gives the same bytes with one thread and two") {
     }
 }
 
-TEST_CASE(
-    "bodies large enough to be shared out give the same bytes with one thread, two and three") {
+TEST_CASE("bodies large enough to be shared out give the same bytes with one thread, two and three",
+          "[stress]") {
     for (const Solver solver : {Solver::explicit_steps, Solver::energy_stepped}) {
         std::uint64_t hash[3][2];
         for (const int threads : {1, 2, 3}) {
@@ -418,7 +419,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("many bodies that break as they fall leave the same bytes with any number of threads") {
+TEST_CASE("many bodies that break as they fall leave the same bytes with any number of threads",
+          "[stress]") {
     std::vector<std::vector<std::uint64_t>> hash;
     for (const int threads : {1, 2, 8}) {
         set_thread_count(threads);

@@ -349,7 +349,8 @@ TEST_CASE("what points held that are let be is booked, and no error") {
     CHECK(after.remainder == Approx(held.remainder).epsilon(1e-3));
 }
 
-TEST_CASE("what presses in a fold goes on without a jump as its sides slide along each other") {
+TEST_CASE("what presses in a fold goes on without a jump as its sides slide along each other",
+          "[stress]") {
     // The strip lies on itself; the crease, at rest 2 cells thick, is drawn along the upper side.
     Aggregate strip = make_block(40, 2, 4, kSpacing, soft(0));
     const auto stored = [&](double slide) {

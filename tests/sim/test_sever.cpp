@@ -336,7 +336,7 @@ TEST_CASE("what contacts held by matter that a blade cuts through stays on the b
     CHECK(std::abs(r.remainder - open) < 0.02 * held);
 }
 
-TEST_CASE("what a body held of one that a blade cuts under it stays on the books") {
+TEST_CASE("what a body held of one that a blade cuts under it stays on the books", "[stress]") {
     const Solver solver = GENERATE(Solver::explicit_steps, Solver::energy_stepped);
     Material heavy = kPad;
     heavy.density = 20000;

@@ -10,7 +10,8 @@
 using namespace swage;
 using namespace swage::test;
 
-TEST_CASE("what springs hold between thin slices is not lost when a blade splits one of them") {
+TEST_CASE("what springs hold between thin slices is not lost when a blade splits one of them",
+          "[stress]") {
     constexpr double kCell = 0.1;
     const Solver solver = GENERATE(Solver::explicit_steps, Solver::energy_stepped);
     const auto [frame_of_cut, is_alone] =

@@ -103,13 +103,14 @@ void fall_on_each_other(int cells, double shift, Solver solver, int frames) {
 
 }  // namespace
 
-TEST_CASE("of two slices without a whole cell that fall on each other one rests on the other") {
+TEST_CASE("of two slices without a whole cell that fall on each other one rests on the other",
+          "[stress]") {
     const double shift = GENERATE(0., 0.25, 0.5, 0.75);
     CAPTURE(shift);
     fall_on_each_other(6, shift, Solver::explicit_steps, 50);
 }
 
-TEST_CASE("slices without a whole cell rest on each other by steps of energy too") {
+TEST_CASE("slices without a whole cell rest on each other by steps of energy too", "[stress]") {
     fall_on_each_other(4, 0.25, Solver::energy_stepped, 25);
 }
 
@@ -131,7 +132,7 @@ Motion motion_of(const Aggregate& matter) {
 
 }  // namespace
 
-TEST_CASE("a slice without a whole cell that is thrown at another pushes it on") {
+TEST_CASE("a slice without a whole cell that is thrown at another pushes it on", "[stress]") {
     const double turned = GENERATE(0., 0.2);
     const Solver solver = GENERATE(Solver::explicit_steps, Solver::energy_stepped);
     CAPTURE(turned);
@@ -339,7 +340,7 @@ TEST_CASE("a slice without a whole cell flies off what it was cut from, however 
     CHECK(slice_of(cube, pieces, 1).place - place == Approx(0.04 * 0.2 * normal.y()).epsilon(0.01));
 }
 
-TEST_CASE("a stack of slices, some without a whole cell, stays as high as it was cut") {
+TEST_CASE("a stack of slices, some without a whole cell, stays as high as it was cut", "[stress]") {
     // Where the blades went, of a cube from -3 to 3.
     const std::vector<double> places =
         GENERATE(std::vector<double>{-2.05}, std::vector<double>{-1.8, -0.8},

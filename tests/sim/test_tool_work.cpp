@@ -61,7 +61,8 @@ Worked press_and_leave(int moves, double up) {
 
 }  // namespace
 
-TEST_CASE("a plate that leaves clay point by point takes back no more than the clay gives") {
+TEST_CASE("a plate that leaves clay point by point takes back no more than the clay gives",
+          "[stress]") {
     // Either the plate leaves a few points in the middle, or all.
     for (const double up : {0.015, 0.03}) {
         const Worked fine = press_and_leave(32, up);

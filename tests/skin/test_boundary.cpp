@@ -251,7 +251,7 @@ TEST_CASE(
     CHECK(least > cap - a);
 }
 
-TEST_CASE("every vertex goes with its own piece, wherever a cut of any shape runs") {
+TEST_CASE("every vertex goes with its own piece, wherever a cut of any shape runs", "[stress]") {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> any(-1, 1);
     const double a = 1.0 / 4;

@@ -189,7 +189,8 @@ TEST_CASE("rubble is closed too where the surface comes as near to a cut as its 
     CHECK(test::is_closed(f.broken.mesh));
 }
 
-TEST_CASE("what a blade has cut and load breaks shows closed surfaces, all volume kept") {
+TEST_CASE("what a blade has cut and load breaks shows closed surfaces, all volume kept",
+          "[stress]") {
     const int number = GENERATE(0, 1);
     Fixture f = body(number);
     const Extent extent = GENERATE(Extent::whole, Extent::ahead, Extent::inside);

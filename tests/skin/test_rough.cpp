@@ -122,7 +122,7 @@ TEST_CASE("a warp is undone by its inverse, and turns nothing inside out") {
     CHECK(least > 0.05);
 }
 
-TEST_CASE("rough faces close pieces of all the volume, none inside out") {
+TEST_CASE("rough faces close pieces of all the volume, none inside out", "[stress]") {
     Fixture f = test::body(GENERATE(0, 1));
     if (GENERATE(false, true)) f.mesh = divide_edges(f.mesh, 1.5 * f.matter.lattice.spacing);
     f.mount = mount_mesh(f.mesh.position, f.matter, SkinKind::mount);
@@ -242,7 +242,7 @@ TEST_CASE("rubble of rough faces does not go through itself") {
     CHECK(self_crossings(f.broken.mesh) == 0);
 }
 
-TEST_CASE("what a blade has cut and load breaks roughly is closed, all volume kept") {
+TEST_CASE("what a blade has cut and load breaks roughly is closed, all volume kept", "[stress]") {
     Fixture f = test::body(GENERATE(0, 1));
     const Vec3 n = GENERATE(Vec3(1, 0, 0), Vec3(1, .31, -.44), Vec3(1, 1, 1)).normalized();
     const Vec3 point = GENERATE(Vec3(.0171, .0213, -.0083), Vec3(.025, .025, -.025));

@@ -57,7 +57,8 @@ double met_depth(ContactSide& side, const Vec3& x) {
 
 }  // namespace
 
-TEST_CASE("what goes into a body from any side meets it at its surface, not deep in it at once") {
+TEST_CASE("what goes into a body from any side meets it at its surface, not deep in it at once",
+          "[stress]") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> any(-1, 1);
     double worst = 0;
@@ -138,14 +139,16 @@ double worst_jump(const char* shape, double cut, double lean, int& places) {
 }  // namespace
 
 // Slivers beyond the last cells, in which it is guessed by one cell, jump by as much.
-TEST_CASE("where a cut meets a body's surface depth does not jump from one cell to the next") {
+TEST_CASE("where a cut meets a body's surface depth does not jump from one cell to the next",
+          "[stress]") {
     const double lean = GENERATE(0., 0.2);
     int places = 0;
     CHECK(worst_jump("calf", 2.3, lean, places) < 0.05);
     CHECK(places > 500);
 }
 
-TEST_CASE("what slides from one cell to the next beside a cut is not pressed in by another guess") {
+TEST_CASE("what slides from one cell to the next beside a cut is not pressed in by another guess",
+          "[stress]") {
     MoldSettings settings;
     settings.across = 5;
     Aggregate matter = mold(make_shape("calf", {}).mesh, {}, settings);

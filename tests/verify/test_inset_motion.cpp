@@ -122,7 +122,8 @@ TEST_CASE("particles that no cell holds count as the body's own material") {
     for (std::size_t p = touch.own(); p < touch.size(); ++p) CHECK(modulus[p] == 1);
 }
 
-TEST_CASE("a ball with a heavy core falls, bounces and keeps its books in every solver") {
+TEST_CASE("a ball with a heavy core falls, bounces and keeps its books in every solver",
+          "[stress]") {
     MoldSettings settings;
     settings.spacing = 0.02;
     TriMesh ball = make_shape("sphere", {{"diameter", 0.1}, {"division", 24}}).mesh;
