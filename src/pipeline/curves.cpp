@@ -214,6 +214,11 @@ std::string csv_text(const StageCurves& curves) {
         for (const char* axis : {"x [m]", "y [m]", "z [m]"}) {
             names.push_back(csv_text_cell(probe.name + " " + axis));
         }
+        for (const SkinField field : probe.field) {
+            const SkinFieldWords& words = words_of(field);
+            const std::string unit = *words.unit == 0 ? "" : fmt::format(" [{}]", words.unit);
+            names.push_back(csv_text_cell(probe.name + " " + words.name + unit));
+        }
     }
     for_sums([&](const BookEntry& entry) { names.emplace_back(entry.column); });
     for (const CountColumn& column : kCountColumns) names.emplace_back(column.name);
@@ -230,6 +235,7 @@ std::string csv_text(const StageCurves& curves) {
         }
         for (const ProbePlace& probe : curves.probes()[row]) {
             for (int c = 0; c < 3; ++c) cells.push_back(csv_number(probe.place[c]));
+            for (const double value : probe.value) cells.push_back(csv_number(value));
         }
         for_sums([&](const BookEntry& entry) { cells.push_back(csv_number(report.*entry.value)); });
         for (const CountColumn& column : kCountColumns) {

@@ -18,20 +18,23 @@ bool flows_by_another(const Aggregate& matter) {
 
 }  // namespace
 
-SkinFieldValues fields_on_skin(const WorkPiece& piece, const std::vector<SkinField>& fields) {
+SkinFieldValues fields_at(const Mount& mount, const Aggregate& matter,
+                          const std::vector<SkinField>& fields) {
     if (fields.empty()) return {};
-    const std::vector<CellId> cells = cells_under(piece.mount, piece.matter);
-    SkinFieldValues values =
-        skin_fields(piece.mount, piece.matter, stress_samples(piece.matter, cells), fields);
+    const std::vector<CellId> cells = cells_under(mount, matter);
+    SkinFieldValues values = skin_fields(mount, matter, stress_samples(matter, cells), fields);
     // What counts for flow may be another stress.
-    if (!flows_by_another(piece.matter)) return values;
+    if (!flows_by_another(matter)) return values;
     for (std::size_t f = 0; f < fields.size(); ++f) {
         if (fields[f] != SkinField::yield_use) continue;
-        values[f] = skin_fields(piece.mount, piece.matter,
-                                stress_samples(piece.matter, cells, Bears::of_flow), {fields[f]})
-                        .front();
+        const std::vector<StressSample> flow = stress_samples(matter, cells, Bears::of_flow);
+        values[f] = skin_fields(mount, matter, flow, {fields[f]}).front();
     }
     return values;
+}
+
+SkinFieldValues fields_on_skin(const WorkPiece& piece, const std::vector<SkinField>& fields) {
+    return fields_at(piece.mount, piece.matter, fields);
 }
 
 std::vector<SkinFieldValues> fields_on_skins(const std::vector<WorkPiece>& bodies,

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/probes.h"
 
+#include <algorithm>
+
 #include "base/units.h"
 #include "geometry/box.h"
+#include "pipeline/piece_fields.h"
 
 namespace swage {
 
@@ -35,9 +38,22 @@ std::vector<ProbePlace> probe_places(const std::vector<BodySpec>& specs,
     std::vector<Vec3> place;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         if (specs[b].probe.empty()) continue;
-        skin_positions(bodies[b].probe, bodies[b].matter, place);
+        const Mount& mount = bodies[b].probe;
+        skin_positions(mount, bodies[b].matter, place);
+        std::vector<SkinField> asked;
+        for (const ProbeSpec& probe : specs[b].probe) {
+            asked.insert(asked.end(), probe.fields.begin(), probe.fields.end());
+        }
+        std::sort(asked.begin(), asked.end());
+        asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+        const SkinFieldValues values = fields_at(mount, bodies[b].matter, asked);
         for (std::size_t n = 0; n < place.size(); ++n) {
-            all.push_back({specs[b].probe[n].name, place[n]});
+            const ProbeSpec& probe = specs[b].probe[n];
+            all.push_back({probe.name, place[n], probe.fields});
+            for (const SkinField field : probe.fields) {
+                const auto at = std::lower_bound(asked.begin(), asked.end(), field);
+                all.back().value.push_back(values[at - asked.begin()][n]);
+            }
         }
     }
     return all;

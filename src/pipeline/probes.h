@@ -11,11 +11,13 @@ namespace swage {
 
 struct ProbePlace {
     std::string name;
-    Vec3 place;  // [m], where the matter is now
+    Vec3 place;                      // [m], where the matter is now
+    std::vector<SkinField> field{};  // of the matter there, as the scene asks
+    std::vector<double> value{};     // of each, in its unit (matter/skin_field.h)
 
     template <typename Io>
     void visit(Io& io) {
-        io(name, place);
+        io(name, place, field, value);
     }
 };
 

@@ -103,9 +103,14 @@ Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap
     const StageTotals& totals = end.totals;
     const Expression& strength = end.machine.spec.gravity_strength;  // of gravity; null: 1
     const FrameReport& last = end.last;
-    Json probes = Json::object();
+    Json probes = Json::object(), probe_fields = Json::object();
     for (const ProbePlace& probe : end.probes) {
         probes[probe.name] = {probe.place.x(), probe.place.y(), probe.place.z()};
+        for (std::size_t f = 0; f < probe.field.size(); ++f) {
+            const SkinFieldWords& words = words_of(probe.field[f]);
+            const std::string unit = *words.unit == 0 ? "" : fmt::format("_{}", words.unit);
+            probe_fields[probe.name][words.name + unit] = probe.value[f];
+        }
     }
     Json by_body = Json::array();
     Json masses = Json::object();
@@ -146,6 +151,7 @@ Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap
         {"own_overlap_m", overlap},
         {"peaks", peaks_json(curves)},
         {"probes_m", probes},
+        {"probe_fields", probe_fields},
         {"energies_J", energies_json(last)},
         {"energies_by_body_J", by_body},
         {"notes", end.machine.notes},

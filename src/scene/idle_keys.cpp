@@ -356,6 +356,9 @@ void warn_of_idle_keys(const Node& root, const SceneSpec& scene, MistakeList& mi
     }
     judge(kOfRender, {section(root, "render"), scene}, mistakes);
     judge_fields(section(root, "output"), scene, mistakes);
+    if (const Entry* probes = root.find("probe")) {
+        for (const Node& probe : probes->value.item) judge_fields(probe, scene, mistakes);
+    }
     warn_of_doubtful_stages(root, scene, mistakes);
 }
 

@@ -116,6 +116,9 @@ constexpr KeyHelp kSceneKeys[] = {
      "the point of the matter to follow, in fractions of its body's box along the axes of the "
      "mesh file",
      "[x, y, z], each 0 to 1", "-"},
+    {"[[probe]]", "fields",
+     "fields of the matter there, as [output] has them for skins: columns in curves/*.csv beside "
+     "the place"},
     {"[[probe]]", "body", "name of a [[body]]", {}, "work-piece"},
 
     {"[skin]", "kind",

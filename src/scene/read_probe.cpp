@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "scene/read_fields.h"
 #include "scene/read_load.h"
 
 namespace swage {
@@ -21,6 +22,7 @@ void read_probe(TableReader& table, std::set<std::string>& names, SceneSpec& sce
     }
     const Node* at = table.find("at");
     probe.place = at != nullptr ? at->place : table.place();
+    read_fields(table, probe.fields);
     std::string of = scene.work_piece().name;
     table.text("body", of);
     const auto body = std::find_if(scene.body.begin(), scene.body.end(),

@@ -43,8 +43,9 @@ struct InsetSpec {
 // A place of a body to be followed.
 struct ProbeSpec {
     std::string name;
-    Vec3 at = Vec3::Zero();  // in shares of the body's own box
-    Place place;             // where the scene says that
+    Vec3 at = Vec3::Zero();           // in shares of the body's own box
+    Place place;                      // where the scene says that
+    std::vector<SkinField> fields{};  // of the matter there
 };
 
 // Where a body stands and how it moves before the first stage.

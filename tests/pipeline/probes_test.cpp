@@ -117,3 +117,38 @@ TEST_CASE("probes stand in the table, a place a row, the start's first") {
     CHECK(text.find("\n1,0,1,2,3,") != std::string::npos);
     CHECK(text.find("\n2,0,1,2,2.5,") != std::string::npos);
 }
+
+TEST_CASE("fields at a probe are those of the matter there, whatever others ask of it") {
+    BodySpec body = probed_bar();
+    body.material.young_modulus = 200e9;
+    body.material.poisson_ratio = 0.3;
+    body.probe[0].fields = {SkinField::stress, SkinField::pressure};
+    body.probe[1].fields = {SkinField::principal_stress, SkinField::stress};
+    WorkPiece piece = bar(body, SkinKind::mount);
+    // Bent by a curvature about z, fibres of each height as if drawn alone: E y kappa.
+    constexpr double kKappa = 1e-3;
+    Vec3Array& x = piece.matter.particle_position;
+    for (std::size_t p = 0; p < x.size(); ++p) {
+        const Vec3 at = x.at(p);
+        const double across = 0.5 * kKappa * 0.3;
+        x.add(p, {kKappa * at.x() * at.y(),
+                  -0.5 * kKappa * at.x() * at.x() + across * (at.z() * at.z() - at.y() * at.y()),
+                  -2 * across * at.y() * at.z()});
+    }
+    const std::vector<ProbePlace> found = probe_places({body}, {piece});
+    REQUIRE(found[0].field == std::vector{SkinField::stress, SkinField::pressure});
+    REQUIRE(found[1].field == std::vector{SkinField::principal_stress, SkinField::stress});
+    // Three cells across: what is within a cell is as good as its middle.
+    const double inside = 200e9 * kKappa * in_bar(kInside).y();
+    CHECK(found[0].value[0] == Approx(0).margin(0.02 * inside));
+    CHECK(found[0].value[1] == Approx(0).margin(0.02 * inside));
+    CHECK(found[1].value[0] == Approx(inside).epsilon(0.02));
+    CHECK(found[1].value[1] == Approx(inside).epsilon(0.02));
+
+    const StageCurves curves("1-bend", 0, {}, FrameReport(), 0, {}, found);
+    const std::string table = csv_text(curves);
+    CHECK(table.find("end z [m],end stress [Pa],end pressure [Pa],inside x [m]") !=
+          std::string::npos);
+    CHECK(table.find("inside principal_stress [Pa],inside stress [Pa],kinetic") !=
+          std::string::npos);
+}

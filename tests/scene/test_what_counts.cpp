@@ -209,6 +209,20 @@ TEST_CASE("a probe lies in its body's box") {
     }
 }
 
+TEST_CASE("a probe tells the fields that it asks for, and of those that say nothing one is told") {
+    Parts parts;
+    parts.rest =
+        "[[probe]]\nname = \"tip\"\nat = [1, 0, 0.5]\n"
+        "fields = [\"stress\", \"yield_use\", \"stress\"]\n";
+    const Read all = read(parts);
+    REQUIRE(all.scene);
+    CHECK(all.scene->work_piece().probe.front().fields ==
+          std::vector{SkinField::stress, SkinField::yield_use});
+    CHECK(has(all.told, "fields: yield_use shows nothing"));
+    parts.rest = "[[probe]]\nname = \"tip\"\nat = [1, 0, 0.5]\nfields = [\"strain\"]\n";
+    CHECK(has(read(parts).told, "fields: \"strain\" is not one of"));
+}
+
 TEST_CASE("the files of materials are among those that a scene is made of") {
     const Read all = read(Parts());
     REQUIRE(all.scene);
