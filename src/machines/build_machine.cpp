@@ -326,9 +326,11 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
         const Expression& where = spec.box     ? (*spec.box)[0][0]
                                   : spec.force ? (*spec.force)[0]
                                                : spec.pressure;
-        refuse(where, fmt::format("{} acts on nothing: no part of the work-piece's surface "
-                                  "faces that way and lies in its box",
-                                  load_name(spec.name)));
+        refuse(where, fmt::format("{} acts on nothing: no part of the work-piece's surface {}{}",
+                                  load_name(spec.name),
+                                  spec.on == Side::inside ? "is the wall of a closed cavity"
+                                                          : "faces that way",
+                                  spec.box ? " and lies in its box" : ""));
     }
     load.closed = load.share.empty() && are_whole_surfaces(matter, load.point);
     if (spec.force) {

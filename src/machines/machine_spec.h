@@ -121,8 +121,9 @@ struct BladeSpec {
     Repetition repeat;
 };
 
-// The way that a part of the surface looks, in the work frame: more than to any other side.
-enum class Side { all, left, right, bottom, top, back, front };
+// The way that a part of the surface looks, in the work frame: more than to any other side. Or the
+// walls of what was molded around cavities, whichever way they look.
+enum class Side { all, left, right, bottom, top, back, front, inside };
 
 // Pushes on the surface that looks to a side and lies in the box [from, to] of the work frame: a
 // force in all, spread evenly by area, that keeps its size and direction; or a pressure, always

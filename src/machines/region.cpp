@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 
 #include "geometry/disjoint_sets.h"
@@ -74,6 +75,26 @@ class NearPoints {
     std::unordered_map<std::uint64_t, std::vector<At>> there_;  // looked up only
 };
 
+struct HangTogether {
+    std::vector<std::size_t> of;  // by point: which
+    std::size_t count = 0;
+};
+
+// Points that are chosen from a surface by what hangs together, as it was molded.
+HangTogether hang_together(const Aggregate& matter, const std::vector<int>& points) {
+    const NearPoints near(matter, points);
+    DisjointSets sets(points.size());
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        near.any(std::size_t(points[n]), [&](int m) {
+            sets.unite(static_cast<int>(n), m);
+            return false;
+        });
+    }
+    std::vector<int> set_of;
+    const auto count = std::size_t(sets.number_sets(set_of));
+    return {{set_of.begin(), set_of.end()}, count};
+}
+
 }  // namespace
 
 // Half a cell across the normal, as far along it as it slants, less where it is cut off.
@@ -101,11 +122,34 @@ double share_within(const Box& patch, const Box& region) {
     return share;
 }
 
+std::vector<char> cavity_walls(const Aggregate& matter) {
+    std::vector<int> all(matter.surface.size());
+    std::iota(all.begin(), all.end(), 0);
+    const HangTogether parts = hang_together(matter, all);
+    std::vector<double> area(parts.count, 0.0), volume(parts.count, 0.0);
+    std::vector<Vec3> middle(parts.count, Vec3::Zero());
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        area[parts.of[p]] += matter.surface.area(p);
+        middle[parts.of[p]] += matter.surface.area(p) * matter.surface_reference(p);
+    }
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        const Vec3 from_middle =
+            matter.surface_reference(p) - middle[parts.of[p]] / area[parts.of[p]];
+        volume[parts.of[p]] +=
+            matter.surface.area(p) * matter.surface.normal(p).dot(from_middle) / 3;
+    }
+    std::vector<char> is_wall(all.size());
+    for (std::size_t p = 0; p < all.size(); ++p) is_wall[p] = volume[parts.of[p]] < 0;
+    return is_wall;
+}
+
 SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
                         const std::vector<Vec3>& in_work, Side side, const Box* box) {
     constexpr double kNothing = 1e-6;  // of a patch
     const Quat work_from_world = world_from_work.rotation.conjugate();
     const Mat3 turn = work_from_world.toRotationMatrix();
+    std::vector<char> is_wall;
+    if (side == Side::inside) is_wall = cavity_walls(matter);
     SurfacePart part;
     bool is_whole = true;
     for (std::size_t p = 0; p < in_work.size(); ++p) {
@@ -114,7 +158,9 @@ SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
             share = share_within(patch_box(matter, turn, p, in_work[p]), *box);
             if (share < kNothing) continue;
         }
-        if (side != Side::all) {
+        if (side == Side::inside) {
+            if (!is_wall[p]) continue;
+        } else if (side != Side::all) {
             const Vec3 normal =
                 present_area<double>(gradient_on_side(matter, p), matter.surface.normal(p));
             if (side_of(work_from_world * normal) != side) continue;
@@ -137,21 +183,12 @@ double patch_area(const Aggregate& matter, std::size_t point) {
 }
 
 std::vector<SurfaceComponent> components_of(const Aggregate& matter, const SurfacePart& part) {
-    const NearPoints near(matter, part.point);
-    DisjointSets sets(part.point.size());
-    for (std::size_t n = 0; n < part.point.size(); ++n) {
-        near.any(std::size_t(part.point[n]), [&](int m) {
-            sets.unite(static_cast<int>(n), m);
-            return false;
-        });
-    }
-    std::vector<int> set_of;
-    std::vector<SurfaceComponent> components(std::size_t(sets.number_sets(set_of)),
-                                             {0, Vec3::Zero()});
+    const HangTogether parts = hang_together(matter, part.point);
+    std::vector<SurfaceComponent> components(parts.count, {0, Vec3::Zero()});
     for (std::size_t n = 0; n < part.point.size(); ++n) {
         const std::size_t p = std::size_t(part.point[n]);
         const double area = part.share_of(n) * patch_area(matter, p);
-        SurfaceComponent& component = components[std::size_t(set_of[n])];
+        SurfaceComponent& component = components[parts.of[n]];
         component.area += area;
         component.middle += area * position_on_side(matter, p);
     }

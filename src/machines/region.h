@@ -20,6 +20,10 @@ Box patch_box(const Aggregate& matter, const Mat3& frame_from_world, std::size_t
 // How much of the patch lies in the region, 0 to 1.
 double share_within(const Box& patch, const Box& region);
 
+// By point: whether it is of the wall of a cavity, a closed surface that looks toward its own
+// middle, as it was molded.
+std::vector<char> cavity_walls(const Aggregate& matter);
+
 // What of the surface looks to the side now and lies in the box (null: anywhere), both in the work
 // frame. `in_work`: where the surface's points are in it.
 SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,

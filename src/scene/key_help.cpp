@@ -205,7 +205,8 @@ constexpr KeyHelp kSceneKeys[] = {
      "-"},
     {"[[stage.load]]", "on",
      "all of the surface that faces this side (right, top, front: the machine's x, y, z), "
-     "including walls of holes; `swage check` shows where that is"},
+     "including walls of holes; inside: the walls of closed cavities; `swage check` shows where "
+     "that is"},
     {"[[stage.load]]", "from",
      "a corner of the box that the surface must lie in, from the middle of the work-piece's "
      "box, along the machine's axes"},

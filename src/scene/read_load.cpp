@@ -55,7 +55,8 @@ void read_load_keys(TableReader& table, ExpressionReader& expression, LoadSpec& 
                         {"bottom", Side::bottom},
                         {"top", Side::top},
                         {"back", Side::back},
-                        {"front", Side::front}},
+                        {"front", Side::front},
+                        {"inside", Side::inside}},
                        load.on);
     std::array<Expression3, 2> box;
     const bool has_from = expression.read(table, "from", Quantity::length, box[0]);

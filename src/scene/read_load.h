@@ -5,7 +5,7 @@
 //     force     three forces in the work frame, in all; or
 //     pressure  along the inward normal of the surface as it deforms
 //     on        "all", or the side that the surface looks to: "left", "right" (along the length),
-//               "bottom", "top", "back", "front"
+//               "bottom", "top", "back", "front"; "inside": the walls of closed cavities
 //     from, to  corners of a box in the work frame that it lies in
 //     strength  times the load, over t from 0 to 1; by default it grows until the stage ends
 #pragma once

@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <fstream>
+#include <sstream>
 
 namespace fs = std::filesystem;
 
@@ -64,6 +65,20 @@ Outcome RunningSwage::wait() {
 Outcome run_swage(const std::vector<std::string>& argument, const fs::path& folder,
                   const std::map<std::string, std::string>& set, const fs::path& program) {
     return RunningSwage(argument, folder, set, program).wait();
+}
+
+std::map<std::string, double> last_row(const fs::path& csv) {
+    std::istringstream table(bytes_of(csv));
+    std::string head, line, last;
+    std::getline(table, head);
+    while (std::getline(table, line)) last = line;
+    std::istringstream names(head), cells(last);
+    std::map<std::string, double> row;
+    for (std::string name, cell;
+         std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
+        if (!cell.empty()) row[name] = std::stod(cell);
+    }
+    return row;
 }
 
 void put_text(const fs::path& file, const std::string& text) {

@@ -53,6 +53,9 @@ std::map<std::string, std::string> files_below(const std::filesystem::path& fold
 bool is_whole_png(const std::string& bytes);
 void put_text(const std::filesystem::path& file, const std::string& text);
 
+// By column of a table that a run has written, what stands in its last row.
+std::map<std::string, double> last_row(const std::filesystem::path& csv);
+
 // A bar of 10 x 2 x 2 cells bent by a few degrees in `frames` frames, drawn small.
 // Returns the scene's file; `more` stands at the end of it.
 std::filesystem::path put_small_scene(const std::filesystem::path& folder, int frames = 3,

@@ -50,15 +50,6 @@ TEST_CASE("an eighth of a cube between three planes that meet stretches as Hooke
     CHECK(strain.x() > 5e-4);
     CHECK(strain.y() == Approx(-0.3 * strain.x()).epsilon(0.01));
     CHECK(strain.z() == Approx(-0.3 * strain.x()).epsilon(0.01));
-    std::istringstream curves(bytes_of(folder / "out/curves/1-octant.csv"));
-    std::string head, line, last;
-    std::getline(curves, head);
-    while (std::getline(curves, line)) last = line;
-    std::istringstream names(head), cells(last);
-    double force = 0;
-    for (std::string name, cell;
-         std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
-        if (name == "pull force x [N]") force = std::stod(cell);
-    }
+    const double force = last_row(folder / "out/curves/1-octant.csv").at("pull force x [N]");
     CHECK(std::abs(force) == Approx(1e6 * 0.01 * strain.x()).epsilon(0.01));
 }

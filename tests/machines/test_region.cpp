@@ -116,6 +116,45 @@ TEST_CASE("a cavity is a closed surface, a part of one is not") {
     CHECK_FALSE(are_whole_surfaces(hollow, half));
 }
 
+TEST_CASE(
+    "inside are the walls of what is closed in, be it one cavity or two, and of nothing else") {
+    const auto ball = [](const Vec3& x, const Vec3& at, double radius) {
+        return (x - at).norm() - radius;
+    };
+    const Vec3 left(-0.7, 0, 0), right(0.6, 0.1, 0);
+    const double wall = GENERATE(0.2, 0.45);  // two cells, and more
+    const Aggregate hollow = make_shape(
+        [&](const Vec3& x) {
+            const double outer = std::min(ball(x, left, 0.6), ball(x, right, 0.75));
+            return std::max({outer, -ball(x, left, 0.6 - wall), -ball(x, right, 0.75 - wall)});
+        },
+        Vec3(-1.4, -1, -1), Vec3i(28, 20, 20), 0.1);
+    LoadSpec spec = push(Side::inside);
+    spec.force.reset();
+    spec.pressure = "2";
+    const Machine machine = with(hollow, spec);
+    const Load& load = machine.apparatus.load.at(0);
+    CHECK(load.closed);
+    CHECK(machine.load_on.at(0).size() == 2);
+    const auto is_inside = [&](const Vec3& x) {
+        return ball(x, left, 0.6 - 0.5 * wall) < 0 || ball(x, right, 0.75 - 0.5 * wall) < 0;
+    };
+    CHECK(load.point == points_where(hollow, is_inside));
+
+    // A tube is open at its ends, a block has nothing in it.
+    const Aggregate tube = make_shape(
+        [](const Vec3& x) {
+            const double r = std::hypot(x.x(), x.y());
+            return std::max({r - 0.6, 0.3 - r, std::abs(x.z()) - 1});
+        },
+        Vec3(-0.8, -0.8, -1.2), Vec3i(16, 16, 24), 0.1);
+    for (const Aggregate& none : {tube, upright()}) {
+        CHECK_THROWS_WITH(with(none, spec), Catch::Contains("load push acts on nothing: no part of "
+                                                            "the work-piece's surface is the wall "
+                                                            "of a closed cavity"));
+    }
+}
+
 TEST_CASE("what of a surface looks to a side is told part by part, with how much and where it is") {
     // A U that is open upward, 1.6 long and 0.8 deep: the ends of its arms, and its floor.
     const Aggregate u = make_shape(
