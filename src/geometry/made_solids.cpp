@@ -158,7 +158,21 @@ TriMesh make_sheet(const ShapeValues& values) {
 TriMesh make_sphere(const ShapeValues& values) {
     const double diameter = values.at("diameter");
     const double edge = diameter / values.at("division");
-    return rounded_box(Vec3::Constant(diameter), 0.5 * diameter, edge, edge);
+    const auto ball = [&](double across) {
+        return rounded_box(Vec3::Constant(across), 0.5 * across, edge, edge);
+    };
+    TriMesh mesh = ball(diameter);
+    const double wall = values.at("wall");
+    if (wall == 0) return mesh;
+    if (wall >= 0.5 * diameter)
+        fail(ExitCode::command_line, "sphere: a wall of {} m leaves no hollow in a radius of {} m",
+             wall, 0.5 * diameter);
+    const TriMesh hollow = ball(diameter - 2 * wall);
+    const int first = static_cast<int>(mesh.position.size());
+    mesh.position.insert(mesh.position.end(), hollow.position.begin(), hollow.position.end());
+    for (const auto& [a, b, c] : hollow.triangle)
+        mesh.triangle.push_back({first + a, first + c, first + b});
+    return mesh;
 }
 
 TriMesh make_rod(const ShapeValues& values) {

@@ -84,7 +84,9 @@ std::vector<Entry> make_entries() {
     all.push_back(
         {{"sphere",
           "a ball of even quads",
-          {length_of("diameter", 0.1, "across"), division_of(24, 2, 1000, "the diameter")}},
+          {length_of("diameter", 0.1, "across"),
+           {"wall", ParameterKind::length, 0, 0, 1e3, "thickness of a hollow one's; 0: solid"},
+           division_of(24, 2, 1000, "the diameter")}},
          make_sphere,
          {},
          finish("rubber", {0.55, 0.09, 0.07}, 0.6, 0.0),

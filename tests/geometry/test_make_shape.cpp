@@ -125,6 +125,12 @@ TEST_CASE("shapes have the size asked for and the volume that follows") {
     CHECK(signed_volume(tube) == Approx(kPi * (0.015 * 0.015 - 0.01 * 0.01) * 0.2).epsilon(2e-3));
     const TriMesh sphere = make_shape("sphere", {{"diameter", 0.2}, {"division", 80}}).mesh;
     CHECK(signed_volume(sphere) == Approx(4 * kPi / 3 * 1e-3).epsilon(2e-3));
+    const TriMesh hollow = make_small("sphere", {{"wall", 0.01}}).mesh;
+    CHECK(signed_volume(hollow) ==
+          Approx(4 * kPi / 3 * (0.05 * 0.05 * 0.05 - 0.04 * 0.04 * 0.04)).epsilon(0.02));
+    CHECK(test::is_closed(hollow));
+    CHECK(surface_components(hollow).count == 2);
+    CHECK_THROWS_AS(make_small("sphere", {{"wall", 0.05}}), Error);
     for (const char* name : {"calf", "wrench", "plate-with-handles"})
         CHECK(box_of(make_small(name, {{"length", 0.4}}).mesh.position).size().x() == Approx(0.4));
     const Box calf = box_of(make_small("calf").mesh.position);
