@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "base/bytes.h"
@@ -48,22 +50,27 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
 // Those that are as they were go on.
 void BodyContact::find_thin() {
     if (!in_motion(settings_.solver)) return;
+    // By body and first particle, which is no other's.
+    std::map<std::pair<std::size_t, ParticleId>, std::size_t> known;
+    for (std::size_t n = 0; n < thin_.size(); ++n) {
+        known[{thin_[n].body, thin_[n].piece->particles()[0]}] = n;
+    }
     std::vector<Thin> found;
     bool is_same = true;
     for (std::size_t b = 0; b < bodies_; ++b) {
         ContactSide& side = *side_[b];
         std::vector<ParticleId> all;
+        std::optional<ThinNear> near;
         for (std::vector<ParticleId>& one : thin_pieces(side.matter())) {
-            const std::size_t n = found.size();
-            const auto was = std::find_if(thin_.begin(), thin_.end(), [&](const Thin& thin) {
-                return thin.piece && thin.body == b && thin.piece->particles() == one;
-            });
+            const auto at = known.find({b, one[0]});
+            const bool was = at != known.end() && thin_[at->second].piece->particles() == one;
             const std::vector<ParticleId> particles = one;
+            if (!was && !near) near.emplace(side.matter());
             std::unique_ptr<ThinPiece> piece =
-                was != thin_.end() ? std::move(was->piece)
-                                   : ThinPiece::find(side.matter(), *side.molded(), std::move(one));
+                was ? std::move(thin_[at->second].piece)
+                    : ThinPiece::find(side.matter(), *side.molded(), *near, std::move(one));
             if (piece == nullptr) continue;
-            is_same = is_same && was == thin_.begin() + std::ptrdiff_t(n);
+            is_same = is_same && was && at->second == found.size();
             all.insert(all.end(), particles.begin(), particles.end());
             found.push_back({b, std::move(piece)});
         }
@@ -89,10 +96,11 @@ void BodyContact::replace_thin(std::vector<Thin> thin) {
         was[b] = b;
         sides.push_back(std::move(side_[b]));
     }
+    std::map<const Aggregate*, std::size_t> known;
+    for (std::size_t s = bodies_; s < side_.size(); ++s) known[&side_[s]->matter()] = s;
     for (std::size_t n = 0; n < thin.size(); ++n) {
-        for (std::size_t s = bodies_; s < side_.size(); ++s) {
-            if (side_[s] && &side_[s]->matter() == &thin[n].piece->matter()) was[bodies_ + n] = s;
-        }
+        const auto at = known.find(&thin[n].piece->matter());
+        if (at != known.end()) was[bodies_ + n] = at->second;
         sides.push_back(was[bodies_ + n] != kNew ? std::move(side_[was[bodies_ + n]])
                                                  : thin[n].piece->contact_side());
     }
@@ -109,14 +117,14 @@ void BodyContact::replace_thin(std::vector<Thin> thin) {
     const auto body_of = [&](std::size_t side) {
         return side < bodies_ ? side : thin[side - bodies_].body;
     };
+    std::map<std::pair<std::size_t, std::size_t>, std::size_t> old;
+    for (std::size_t w = between_bodies; w < pair_.size(); ++w) {
+        old[{pair_[w].from, pair_[w].onto}] = w;
+    }
     const auto add = [&](std::size_t from, std::size_t onto, std::size_t back) {
-        std::size_t old = between_bodies;
-        while (old < pair_.size() &&
-               !(pair_[old].from == was[from] && pair_[old].onto == was[onto])) {
-            ++old;
-        }
+        const auto at = old.find({was[from], was[onto]});
         pairs.push_back({from, onto, back});
-        if (old < pair_.size()) return take(old);
+        if (at != old.end()) return take(at->second);
         ways.emplace_back(*sides[from], *sides[onto], settings_);
         ways.back().come_late();
     };
@@ -217,17 +225,18 @@ void BodyContact::take_on(ByteReader& in) {
     }
     const auto count = in.get<std::uint64_t>();
     if (count != way_.size()) allowance_ = -1;
+    std::map<std::pair<std::size_t, std::size_t>, std::size_t> number;
+    for (std::size_t w = 0; w < way_.size(); ++w) number[{pair_[w].from, pair_[w].onto}] = w;
     for (std::uint64_t n = 0; n < count; ++n) {
         std::size_t from, onto;
         bool near;
         std::string bytes;
         in(from, onto, near, bytes);
-        for (std::size_t w = 0; w < way_.size(); ++w) {
-            if (pair_[w].from != from || pair_[w].onto != onto) continue;
-            ByteReader way(bytes);
-            way_[w].take_on(way, step_);
-            if (near) near_.push_back(w);
-        }
+        const auto at = number.find({from, onto});
+        if (at == number.end()) continue;
+        ByteReader way(bytes);
+        way_[at->second].take_on(way, step_);
+        if (near) near_.push_back(at->second);
     }
     for (const std::unique_ptr<ContactSide>& side : side_) side->patch().clear();
     for (std::size_t w : near_) way_[w].resolve();

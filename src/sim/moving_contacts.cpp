@@ -2,6 +2,8 @@
 #include "sim/moving_contacts.h"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -44,19 +46,21 @@ MovingContacts::MovingContacts(const Aggregate& matter, const Apparatus& apparat
 // Those that are as they were go on.
 double MovingContacts::find_thin(const Aggregate& matter) {
     if (apparatus_->tool.empty() || !follows_all_motion(settings_.solver)) return 0;
+    std::map<ParticleId, std::size_t> known;  // by the first particle, which is no other's
+    for (std::size_t n = 0; n < thin_.size(); ++n) known[thin_[n].piece->particles()[0]] = n;
     std::vector<Thin> found;
     std::vector<ParticleId> all;
+    std::optional<ThinNear> near;
     std::shared_ptr<const RestSurface> molded;
     std::shared_ptr<const Apparatus> tools;
     for (const std::vector<ParticleId>& one : thin_pieces(matter)) {
-        const auto was = std::find_if(thin_.begin(), thin_.end(), [&](const Thin& thin) {
-            return thin.piece && thin.piece->particles() == one;
-        });
-        if (was != thin_.end()) {
-            found.push_back(std::move(*was));
+        const auto was = known.find(one[0]);
+        if (was != known.end() && thin_[was->second].piece->particles() == one) {
+            found.push_back(std::move(thin_[was->second]));
         } else {
             if (!molded) molded = std::make_shared<const RestSurface>(matter);
-            std::shared_ptr<ThinPiece> piece = ThinPiece::find(matter, *molded, one);
+            if (!near) near.emplace(matter);
+            std::shared_ptr<ThinPiece> piece = ThinPiece::find(matter, *molded, *near, one);
             if (!piece) continue;
             if (!tools) {
                 Apparatus own;

@@ -51,17 +51,15 @@ bool is_within(const Lattice& lattice, const RestSurface& molded, const Vec3i& s
 // NOTE: cut points do not say of which connection they are. Where a plane goes through a particle,
 // which all connections from that meet at one place, its normal tells which of them are severed
 // there. Two that cross are severed at their middle by one plane at most; the first one stays.
-ThinEnds::ThinEnds(const Aggregate& of, const RestSurface& molded, const std::vector<Vec3i>& site,
+ThinEnds::ThinEnds(const Aggregate& of, const RestSurface& molded, const ThinNear& near,
+                   const std::vector<Vec3i>& site,
                    const std::function<int(const Vec3i&)>& number_at)
     : site_(site) {
     const Lattice& lattice = of.lattice;
-    Vec3i least = site[0], most = site[0];
-    for (const Vec3i& at : site) least = least.cwiseMin(at), most = most.cwiseMax(at);
-    const Vec3 reach = Vec3::Constant(1 + kOn), low = least.cast<double>() - reach,
-               high = most.cast<double>() + reach;
-    for (const CutPoint& cut : of.cut) {
+    const Vec3 reach = Vec3::Constant(1 + kOn);
+    for (int c : near.cut.around(site, -2, 1)) {  // no farther than that from any
+        const CutPoint& cut = of.cut[std::size_t(c)];
         const Vec3 place(cut.place[0], cut.place[1], cut.place[2]);
-        if ((place.array() < low.array()).any() || (place.array() > high.array()).any()) continue;
         const Vec3 normal(cut.normal[0], cut.normal[1], cut.normal[2]);
         const Vec3i from = (place - reach).array().ceil().cast<int>();
         for (int n = 0; n < kWays; ++n) {

@@ -9,6 +9,7 @@
 #include "matter/aggregate.h"
 #include "matter/cut_planes.h"
 #include "sim/rest_surface.h"
+#include "sim/thin_near.h"
 
 namespace swage {
 
@@ -17,8 +18,8 @@ class ThinEnds {
     // `site`: of the piece's particles; `number_at`: which of them is there, -1: none. What no
     // blade is known to have ended within the matter ends half-way to the next particle along an
     // axis.
-    ThinEnds(const Aggregate& of, const RestSurface& molded, const std::vector<Vec3i>& site,
-             const std::function<int(const Vec3i&)>& number_at);
+    ThinEnds(const Aggregate& of, const RestSurface& molded, const ThinNear& near,
+             const std::vector<Vec3i>& site, const std::function<int(const Vec3i&)>& number_at);
 
     // The plane, normal outward, that parts the particle from the next one that way; null: none.
     const CutPlane* toward(int number, const Vec3i& way) const;

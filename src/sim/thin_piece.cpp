@@ -45,12 +45,11 @@ std::vector<std::vector<ParticleId>> thin_pieces(const Aggregate& matter) {
 }
 
 std::unique_ptr<ThinPiece> ThinPiece::find(const Aggregate& of, const RestSurface& molded,
+                                           const ThinNear& near,
                                            std::vector<ParticleId> particles) {
     std::unique_ptr<ThinPiece> piece(new ThinPiece(of, std::move(particles)));
-    piece->slot_.assign(of.particle_count(), -1);
     for (std::size_t n = 0; n < piece->particle_.size(); ++n) {
         piece->by_site_.emplace_back(key_of(lattice_site(of, piece->particle_[n])), int(n));
-        piece->slot_[std::size_t(piece->particle_[n])] = static_cast<int>(n);
     }
     std::sort(piece->by_site_.begin(), piece->by_site_.end());
     for (piece->axis_ = 2; piece->axis_ >= 0 && !piece->find_layer();) --piece->axis_;
@@ -60,9 +59,10 @@ std::unique_ptr<ThinPiece> ThinPiece::find(const Aggregate& of, const RestSurfac
     }
     std::vector<Vec3i> sites;
     for (std::size_t n = 0; n < piece->particle_.size(); ++n) sites.push_back(piece->site_of(n));
-    const ThinEnds ends(of, molded, sites, [&](const Vec3i& at) { return piece->number_at(at); });
+    const ThinEnds ends(of, molded, near, sites,
+                        [&](const Vec3i& at) { return piece->number_at(at); });
     piece->find_ends(ends);
-    piece->add_molded(ends);
+    piece->add_molded(ends, near.point.around(sites, -1, 0));
     piece->molded_ = std::make_shared<const RestSurface>(piece->matter_, false);
     piece->add_new(ends, molded);
     if (piece->matter_.surface.size() == 0) return nullptr;  // only corners that matter shares
@@ -74,6 +74,11 @@ int ThinPiece::number_at(const Vec3i& site) const {
     const std::uint64_t key = key_of(site);
     const auto at = std::lower_bound(by_site_.begin(), by_site_.end(), std::pair{key, 0});
     return at != by_site_.end() && at->first == key ? at->second : -1;
+}
+
+int ThinPiece::number_of(ParticleId particle) const {
+    const auto at = std::lower_bound(particle_.begin(), particle_.end(), particle);
+    return at != particle_.end() && *at == particle ? int(at - particle_.begin()) : -1;
 }
 
 Vec3i ThinPiece::site_of(std::size_t number) const { return lattice_site(*of_, particle_[number]); }
@@ -157,17 +162,17 @@ void ThinPiece::make_cells() {
 }
 
 // On each axis.
-std::vector<ParticleId> ThinPiece::particles_within(double reach, const Vec3& place) const {
+std::vector<int> ThinPiece::numbers_within(double reach, const Vec3& place) const {
     const Lattice& lattice = of_->lattice;
     const Vec3 far = Vec3::Constant(reach), at = (place - lattice.origin) / lattice.spacing;
     const Vec3i low = (at - far).array().ceil().cast<int>(),
                 high = (at + far).array().floor().cast<int>();
-    std::vector<ParticleId> near;
+    std::vector<int> near;
     for (int k = low.z(); k <= high.z(); ++k) {
         for (int j = low.y(); j <= high.y(); ++j) {
             for (int i = low.x(); i <= high.x(); ++i) {
                 const int number = number_at({i, j, k});
-                if (number >= 0) near.push_back(particle_[std::size_t(number)]);
+                if (number >= 0) near.push_back(number);
             }
         }
     }
@@ -190,13 +195,15 @@ bool ThinPiece::add_corner(std::size_t corner) {
 
 // False where the particles so near do not tell.
 bool ThinPiece::add_corner(const Vec3& place, double reach, ParticleId own) {
-    const std::vector<ParticleId> near = particles_within(reach + 0.1, place);
+    const std::vector<int> near = numbers_within(reach + 0.1, place);
     if (near.size() < 3) return false;
-    const auto at = [&](ParticleId p) { return of_->particle_reference.at(std::size_t(p)); };
+    const auto at = [&](int number) {
+        return of_->particle_reference.at(std::size_t(particle_[std::size_t(number)]));
+    };
     Vec3 middle = Vec3::Zero();
-    for (ParticleId p : near) middle += at(p) / double(near.size());
+    for (int n : near) middle += at(n) / double(near.size());
     Mat3 spread = Mat3::Zero();
-    for (ParticleId p : near) spread += (at(p) - middle) * (at(p) - middle).transpose();
+    for (int n : near) spread += (at(n) - middle) * (at(n) - middle).transpose();
     const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
     const Vec3 size = axes.eigenvalues();
     if (size[1] < kFlat * size[2]) return false;
@@ -206,13 +213,14 @@ bool ThinPiece::add_corner(const Vec3& place, double reach, ParticleId own) {
     const Vec3 out = along.transpose() * (place - middle);
     const double off = is_flat ? out[0] * std::sqrt(1 + kFolded * kFolded) : 0;
     Corner corner{static_cast<int>(share_.size()), 0, off};
-    for (ParticleId p : near) {
-        const Vec3 way = along.transpose() * (at(p) - middle);
+    for (int n : near) {
+        const ParticleId p = particle_[std::size_t(n)];
+        const Vec3 way = along.transpose() * (at(n) - middle);
         const Vec3 by = way.cwiseQuotient(size);
         double weight = 1.0 / double(near.size()) + by[1] * out[1] + by[2] * out[2];
         if (!is_flat) weight += by[0] * out[0];
         if (own >= 0) weight = p == own ? 1 : 0;
-        share_.push_back({p, weight, by[1], by[2]});
+        share_.push_back({p, n, weight, by[1], by[2]});
     }
     corner.end = static_cast<int>(share_.size());
     corner_.push_back(corner);
@@ -230,10 +238,11 @@ void ThinPiece::add_point(const Vec3i& cell, const Vec3& at, double area, const 
 
 // As molded: what lies before the planes that end the nearest of its particles for which it does.
 // Of patches that a plane goes through what is left: they are half a cell wide.
-void ThinPiece::add_molded(const ThinEnds& ends) {
+void ThinPiece::add_molded(const ThinEnds& ends, const std::vector<int>& points) {
     constexpr double kAlong = 0.3;  // sine of the angle to a plane that hardly parts them
     const Lattice& lattice = of_->lattice;
-    for (std::size_t p = 0; p < of_->surface.size(); ++p) {
+    for (int point : points) {
+        const auto p = static_cast<std::size_t>(point);
         if (of_->surface.is_loose(p)) continue;
         const std::array<ParticleId, 8> corner = of_->surface.corner(p);
         const Vec3 normal = of_->surface.normal(p),
@@ -241,14 +250,14 @@ void ThinPiece::add_molded(const ThinEnds& ends) {
         const double half = 0.5 * std::sqrt(of_->surface.area(p)) / lattice.spacing;
         std::vector<std::pair<double, int>> near;
         for (int c = 0; c < 8; ++c) {
-            const int number = slot_[std::size_t(corner[std::size_t(c)])];
+            const int number = number_of(corner[std::size_t(c)]);
             if (number < 0) continue;
             const Vec3 way = site_of(std::size_t(number)).cast<double>() - at;
             near.emplace_back(way.squaredNorm(), c);
         }
         std::sort(near.begin(), near.end());
         for (const auto& [far, c] : near) {
-            const int number = slot_[std::size_t(corner[std::size_t(c)])];
+            const int number = number_of(corner[std::size_t(c)]);
             const Vec3i site = site_of(std::size_t(number));
             Vec3 place = at;
             double left = 1;
@@ -396,7 +405,7 @@ void ThinPiece::end_forces(const Vec3& gravity, double step, Vec3Array& of, Cont
         }
         for (int n = corner.begin; n < corner.end; ++n) {
             const Share& by = share_[std::size_t(n)];
-            done_.add(std::size_t(slot_[std::size_t(by.particle)]),
+            done_.add(std::size_t(by.number),
                       by.weight * f + by.first * first + by.second * second);
         }
     }

@@ -29,6 +29,7 @@
 #include "sim/cut_surface.h"
 #include "sim/rest_surface.h"
 #include "sim/thin_ends.h"
+#include "sim/thin_near.h"
 
 namespace swage {
 
@@ -40,9 +41,9 @@ class ThinPiece {
   public:
     // Null where the particles lie in a row, which does not tell how they turn, or have no surface
     // on their side, as corners of cells that hold little. `of` must outlive it; `molded`: its
-    // surface.
+    // surface; `near`: of it as it is now.
     static std::unique_ptr<ThinPiece> find(const Aggregate& of, const RestSurface& molded,
-                                           std::vector<ParticleId> particles);
+                                           const ThinNear& near, std::vector<ParticleId> particles);
 
     const std::vector<ParticleId>& particles() const { return particle_; }
     // Its cells, where they were when last asked to follow the particles.
@@ -61,6 +62,7 @@ class ThinPiece {
   private:
     struct Share {
         ParticleId particle;
+        int number;                    // in particle_
         double weight, first, second;  // w, c_1, c_2 [1, 1/m, 1/m]
     };
     struct Corner {
@@ -75,14 +77,15 @@ class ThinPiece {
     ThinPiece(const Aggregate& of, std::vector<ParticleId> particles)
         : of_(&of), particle_(std::move(particles)) {}
     int number_at(const Vec3i& site) const;  // the piece's particle there, -1: none
+    int number_of(ParticleId particle) const;
     Vec3i site_of(std::size_t number) const;
     bool find_layer();
     void make_cells();
-    std::vector<ParticleId> particles_within(double reach, const Vec3& place) const;
+    std::vector<int> numbers_within(double reach, const Vec3& place) const;
     bool add_corner(std::size_t corner);
     bool add_corner(const Vec3& place, double reach, ParticleId own);
     void add_point(const Vec3i& cell, const Vec3& at, double area, const Vec3& normal);
-    void add_molded(const ThinEnds& ends);
+    void add_molded(const ThinEnds& ends, const std::vector<int>& points);
     void add_new(const ThinEnds& ends, const RestSurface& molded);
     std::vector<CutPlane> planes_of(const Vec3i& cell, const ThinEnds& ends) const;
     void find_ends(const ThinEnds& ends);
@@ -115,7 +118,6 @@ class ThinPiece {
     std::vector<Corner> corner_;
     std::vector<Frame> frame_;
     Vec3Array force_, before_, done_;  // done_: of particle_, in its order
-    std::vector<int> slot_;            // of each particle of the body its place there, -1: none
 };
 
 }  // namespace swage
