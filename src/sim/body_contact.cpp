@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "geometry/box.h"
 #include "geometry/disjoint_sets.h"
+#include "geometry/near_boxes.h"
 #include "sim/contact_shares.h"
 
 namespace swage {
@@ -20,7 +23,7 @@ namespace {
 
 constexpr double kWay = 0.45;              // spacings that anything may go between searches
 constexpr std::size_t kThreadShare = 128;  // contacts that a thread is worth waking for
-constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
@@ -44,6 +47,7 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
             way_.emplace_back(*side_[a], *side_[b], settings);
         }
     }
+    between_bodies_ = way_.size();
     find_thin();
 }
 
@@ -83,73 +87,115 @@ void BodyContact::find_thin() {
     }
 }
 
-// The ways between bodies come first, and stay. What lies in a thin piece as that comes to be has
-// not been pressed into it: its particles alone may have met all else until then.
+// Ways between thin pieces that go on stay. What lies in a thin piece as that comes to be has not
+// been pressed into it: its particles alone may have met all else until then.
 void BodyContact::replace_thin(std::vector<Thin> thin) {
-    const std::size_t between_bodies =
-        std::size_t(std::count_if(pair_.begin(), pair_.end(), [&](const Pair& pair) {
-            return pair.from < bodies_ && pair.onto < bodies_;
-        }));
-    std::vector<std::unique_ptr<ContactSide>> sides;
-    std::vector<std::size_t> was(bodies_ + thin.size(), kNew);  // the side of each
-    for (std::size_t b = 0; b < bodies_; ++b) {
-        was[b] = b;
-        sides.push_back(std::move(side_[b]));
-    }
     std::map<const Aggregate*, std::size_t> known;
     for (std::size_t s = bodies_; s < side_.size(); ++s) known[&side_[s]->matter()] = s;
-    for (std::size_t n = 0; n < thin.size(); ++n) {
-        const auto at = known.find(&thin[n].piece->matter());
-        if (at != known.end()) was[bodies_ + n] = at->second;
-        sides.push_back(was[bodies_ + n] != kNew ? std::move(side_[was[bodies_ + n]])
-                                                 : thin[n].piece->contact_side());
+    std::vector<std::unique_ptr<ContactSide>> sides;
+    std::vector<std::size_t> now(side_.size(), kNone);  // the number of each from now on
+    for (std::size_t b = 0; b < bodies_; ++b) {
+        now[b] = b;
+        sides.push_back(std::move(side_[b]));
     }
-    std::vector<Pair> pairs(pair_.begin(), pair_.begin() + std::ptrdiff_t(between_bodies));
-    std::vector<ContactWay> ways;
-    std::vector<std::size_t> near;
-    std::vector<char> taken(way_.size(), 0);
-    const auto take = [&](std::size_t w) {
-        if (std::binary_search(near_.begin(), near_.end(), w)) near.push_back(ways.size());
-        ways.push_back(std::move(way_[w]));
-        taken[w] = 1;
-    };
-    for (std::size_t w = 0; w < between_bodies; ++w) take(w);
-    const auto body_of = [&](std::size_t side) {
-        return side < bodies_ ? side : thin[side - bodies_].body;
-    };
-    std::map<std::pair<std::size_t, std::size_t>, std::size_t> old;
-    for (std::size_t w = between_bodies; w < pair_.size(); ++w) {
-        old[{pair_[w].from, pair_[w].onto}] = w;
-    }
-    const auto add = [&](std::size_t from, std::size_t onto, std::size_t back) {
-        const auto at = old.find({was[from], was[onto]});
-        pairs.push_back({from, onto, back});
-        if (at != old.end()) return take(at->second);
-        ways.emplace_back(*sides[from], *sides[onto], settings_);
-        ways.back().come_late();
-    };
-    for (std::size_t s = bodies_; s < sides.size(); ++s) {
-        for (std::size_t other = 0; other < s; ++other) {
-            if (body_of(s) == body_of(other) && !settings_.self_contact) continue;
-            const std::size_t first = ways.size();
-            add(other, s, first + 1);
-            add(s, other, first);
-        }
+    for (const Thin& one : thin) {
+        const auto at = known.find(&one.piece->matter());
+        if (at != known.end()) now[at->second] = sides.size();
+        sides.push_back(at != known.end() ? std::move(side_[at->second])
+                                          : one.piece->contact_side());
     }
     let_go_.resize(bodies_, 0.0);
-    for (std::size_t w = 0; w < way_.size(); ++w) {
-        if (taken[w]) continue;
-        for (std::size_t side : {pair_[w].from, pair_[w].onto}) {
-            let_go_[this->body_of(side)] += way_[w].sums().stored;
+    std::vector<Sides> stay;
+    for (std::size_t w = between_bodies_; w < way_.size(); ++w) {
+        auto& [from, onto, back] = pair_[w];
+        if (now[from] != kNone && now[onto] != kNone) {
+            from = now[from], onto = now[onto];
+            stay.emplace_back(from, onto);
+            continue;
         }
+        for (std::size_t side : {from, onto}) let_go_[body_of(side)] += way_[w].sums().stored;
+        from = onto = kNone;
     }
     side_ = std::move(sides);
     thin_ = std::move(thin);
-    pair_ = std::move(pairs);
-    way_ = std::move(ways);
-    near_ = std::move(near);
+    keep_ways(stay);
     listed_.clear();
     allowance_ = -1;
+}
+
+std::vector<BodyContact::Sides> BodyContact::thin_ways() const {
+    std::vector<Sides> thin;
+    for (std::size_t w = between_bodies_; w < pair_.size(); ++w) {
+        thin.emplace_back(pair_[w].from, pair_[w].onto);
+    }
+    return thin;
+}
+
+// Of those with thin pieces these there are from now on, and those there are now of them go on.
+void BodyContact::keep_ways(const std::vector<Sides>& thin) {
+    std::map<Sides, std::size_t> were;
+    for (std::size_t w = between_bodies_; w < way_.size(); ++w) {
+        were[{pair_[w].from, pair_[w].onto}] = w;
+    }
+    std::vector<Sides> sorted = thin;
+    std::sort(sorted.begin(), sorted.end(), [](const Sides& a, const Sides& b) {
+        return std::tuple(std::max(a.first, a.second), std::min(a.first, a.second), a.first) <
+               std::tuple(std::max(b.first, b.second), std::min(b.first, b.second), b.first);
+    });
+    std::vector<ContactWay> ways;
+    std::vector<Pair> pairs;
+    for (const auto& [from, onto] : sorted) {
+        const std::size_t w = between_bodies_ + ways.size();
+        pairs.push_back({from, onto, w + 1 - 2 * (ways.size() % 2)});
+        const auto at = were.find({from, onto});
+        if (at != were.end()) {
+            ways.push_back(std::move(way_[at->second]));
+        } else {
+            ways.emplace_back(*side_[from], *side_[onto], settings_);
+            ways.back().come_late();
+        }
+    }
+    std::erase_if(near_, [&](std::size_t w) { return w >= between_bodies_; });
+    for (std::size_t n = 0; n < ways.size(); ++n) near_.push_back(between_bodies_ + n);
+    way_.erase(way_.begin() + std::ptrdiff_t(between_bodies_), way_.end());
+    pair_.erase(pair_.begin() + std::ptrdiff_t(between_bodies_), pair_.end());
+    std::move(ways.begin(), ways.end(), std::back_inserter(way_));
+    pair_.insert(pair_.end(), pairs.begin(), pairs.end());
+}
+
+// Finds the pairs with thin pieces that are within this [m], which have ways from now on; what
+// sleeps keeps those that it has. Returns how far any particle may go before others are, at most so
+// far [m].
+double BodyContact::find_near_thin(const std::vector<Box>& box, const std::vector<char>& asleep,
+                                   double margin, double most) {
+    if (thin_.empty()) return most;
+    const auto least_gap = [&](double within, const auto& visit) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& [a, b] : near_boxes(box, within)) {
+            const auto one = static_cast<std::size_t>(a), other = static_cast<std::size_t>(b);
+            if (other < bodies_) continue;
+            if (!settings_.self_contact && body_of(one) == body_of(other)) continue;
+            least = std::min(least, gap_between(box[one], box[other]));
+            visit(one, other);
+        }
+        return least;
+    };
+    std::vector<Sides> near;
+    for (std::size_t w = between_bodies_; w < way_.size(); ++w) {
+        if (pair_[w].sleeps(asleep)) near.emplace_back(pair_[w].from, pair_[w].onto);
+    }
+    const double least = least_gap(margin, [&](std::size_t one, std::size_t other) {
+        if (asleep[one] && asleep[other]) return;
+        near.emplace_back(one, other);
+        near.emplace_back(other, one);
+    });
+    keep_ways(near);
+    if (least <= margin || !std::isfinite(most)) return std::min(most, 0.5 * margin);
+    for (double far = 2 * margin; 0.5 * margin < most; margin = far, far *= 2) {
+        const double next = least_gap(far, [](std::size_t, std::size_t) {});
+        if (next <= far) return std::min(most, 0.5 * next);
+    }
+    return most;
 }
 
 std::vector<char> BodyContact::of_sides(const std::vector<char>& of_bodies) const {
@@ -180,6 +226,7 @@ void BodyContact::connections_changed(std::size_t body) {
 
 struct BodyContact::State {
     std::vector<std::size_t> near;
+    std::vector<Sides> thin;  // of ways that are not between bodies
     std::vector<ContactWay::State> way;
     std::vector<double> let_go;
 };
@@ -188,12 +235,14 @@ std::shared_ptr<const BodyContact::State> BodyContact::save() const {
     State state;
     state.near = near_;
     state.let_go = let_go_;
+    state.thin = thin_ways();
     state.way.reserve(way_.size());
     for (const ContactWay& way : way_) state.way.push_back(way.save());
     return std::make_shared<const State>(std::move(state));
 }
 
 void BodyContact::restore(const State& state) {
+    keep_ways(state.thin);
     near_ = state.near;
     let_go_ = state.let_go;
     for (std::size_t w : near_) way_[w].come_near(step_);
@@ -213,7 +262,7 @@ void BodyContact::hand_on(ByteWriter& out) {
         ByteWriter way;
         way_[w].hand_on(way);
         const bool near = std::binary_search(near_.begin(), near_.end(), w);
-        out(pair_[w].from, pair_[w].onto, near, way.bytes());
+        out(Sides(pair_[w].from, pair_[w].onto), near, way.bytes());
     }
 }
 
@@ -223,21 +272,34 @@ void BodyContact::take_on(ByteReader& in) {
     for (const std::unique_ptr<ContactSide>& side : side_) {
         if (in.get<bool>()) side->visit_points(in);
     }
-    const auto count = in.get<std::uint64_t>();
-    if (count != way_.size()) allowance_ = -1;
-    std::map<std::pair<std::size_t, std::size_t>, std::size_t> number;
-    for (std::size_t w = 0; w < way_.size(); ++w) number[{pair_[w].from, pair_[w].onto}] = w;
-    for (std::uint64_t n = 0; n < count; ++n) {
-        std::size_t from, onto;
+    struct HandedOn {
         bool near;
         std::string bytes;
-        in(from, onto, near, bytes);
-        const auto at = number.find({from, onto});
-        if (at == number.end()) continue;
-        ByteReader way(bytes);
-        way_[at->second].take_on(way, step_);
-        if (near) near_.push_back(at->second);
+    };
+    std::map<Sides, HandedOn> handed_on;
+    std::size_t between_bodies = 0;
+    std::vector<Sides> thin;
+    for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
+        Sides of;
+        HandedOn way;
+        in(of, way.near, way.bytes);
+        const auto [low, high] = std::minmax(of.first, of.second);
+        between_bodies += high < bodies_;
+        const bool meet = settings_.self_contact || body_of(low) != body_of(high);
+        if (high >= bodies_ && meet) thin.push_back(of);
+        handed_on[of] = std::move(way);
     }
+    if (between_bodies != between_bodies_) allowance_ = -1;
+    near_.clear();
+    keep_ways(thin);
+    for (std::size_t w = 0; w < way_.size(); ++w) {
+        const auto at = handed_on.find({pair_[w].from, pair_[w].onto});
+        if (at == handed_on.end()) continue;
+        if (w < between_bodies_ && at->second.near) near_.push_back(w);
+        ByteReader way(at->second.bytes);
+        way_[w].take_on(way, step_);
+    }
+    std::sort(near_.begin(), near_.end());
     for (const std::unique_ptr<ContactSide>& side : side_) side->patch().clear();
     for (std::size_t w : near_) way_[w].resolve();
 }
@@ -283,7 +345,7 @@ void BodyContact::renew_all(const std::vector<char>& bodies_asleep) {
     const double step = kWay * least_spacing_;
     allowance_ = std::numeric_limits<double>::infinity();
     std::vector<std::size_t> were = std::exchange(near_, {});
-    for (std::size_t w = 0; w < way_.size(); ++w) {
+    for (std::size_t w = 0; w < between_bodies_; ++w) {
         const auto [from, onto, back] = pair_[w];
         const double gap = gap_between(box[from], box[onto]);
         const bool near = from == onto || gap <= 2 * step;
@@ -298,6 +360,11 @@ void BodyContact::renew_all(const std::vector<char>& bodies_asleep) {
         } else if (was_near) {
             way_[w].part();
         }
+    }
+    allowance_ = find_near_thin(box, asleep, 2 * step, allowance_);
+    for (std::size_t w = between_bodies_; w < way_.size(); ++w) {
+        way_[w].come_near(step_);
+        if (!pair_[w].sleeps(asleep)) way_[w].search(2 * step);
     }
     for (const std::unique_ptr<ContactSide>& side : side_) side->patch().clear();
     for (std::size_t w : near_) way_[w].resolve();

@@ -25,8 +25,10 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "geometry/box.h"
 #include "matter/aggregate.h"
 #include "sim/contact_side.h"
 #include "sim/contact_sums.h"
@@ -90,10 +92,14 @@ class BodyContact {
         if constexpr (Io::kReads) find_thin();
         io(listed_, near_, step_, allowance_);
         for (std::unique_ptr<ContactSide>& side : side_) io(*side);
+        std::vector<Sides> thin = thin_ways();
+        io(thin);
+        if constexpr (Io::kReads) keep_ways(thin);
         for (ContactWay& way : way_) io(way);
     }
 
   private:
+    using Sides = std::pair<std::size_t, std::size_t>;  // from, onto
     struct Pair {
         std::size_t from, onto;
         std::size_t back;  // the way from `onto` to `from`
@@ -109,6 +115,10 @@ class BodyContact {
     }
     void find_thin();
     void replace_thin(std::vector<Thin> thin);
+    std::vector<Sides> thin_ways() const;
+    void keep_ways(const std::vector<Sides>& thin);
+    double find_near_thin(const std::vector<Box>& box, const std::vector<char>& asleep,
+                          double margin, double most);
     std::vector<char> of_sides(const std::vector<char>& of_bodies) const;
     void follow();
 
@@ -118,8 +128,11 @@ class BodyContact {
     std::vector<Thin> thin_;
     std::vector<double> let_go_;             // by side, held by ways that are no more [J]
     std::vector<std::vector<Vec3>> listed_;  // of each side, where its skin was
+    // Between bodies, of all pairs; then of those pairs with thin pieces that are near each other,
+    // of each the two ways one after the other.
     std::vector<ContactWay> way_;
-    std::vector<Pair> pair_;         // the sides of each way
+    std::vector<Pair> pair_;  // the sides of each way
+    std::size_t between_bodies_ = 0;
     std::vector<std::size_t> near_;  // ways of bodies that are near each other, in their order
     double least_spacing_ = 0;       // [m]
     double step_ = 0;                // that stiffness is held to; 0: any [s]
