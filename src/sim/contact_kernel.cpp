@@ -20,6 +20,11 @@ struct ContactWay::Kernel {
     ContactWay& way;
     const ContactSide& onto = *way.onto_;
     ContactPatch &a = way.from_->patch(), &b = way.onto_->patch();
+    // Of each point; null before the sides have come near.
+    const double* const asked = way.points_ ? way.points_->asked.data() : nullptr;
+    const double* const hold_at = way.points_ ? way.points_->hold.data() : nullptr;
+
+    double hold_of(const Contact& contact) const { return hold_at[contact.point]; }
 
     // Whether it presses, or sticks and is not torn off.
     static bool acts(const Meeting& at, const ContactMemory& last, double hold) {
@@ -50,7 +55,7 @@ struct ContactWay::Kernel {
     SWAGE_INLINE bool find_depth(Contact& contact, const ContactMemory& last, Vec4 x,
                                  CellCorners& corner, CellGradient& gradient,
                                  RestSurface::Depth& depth) const {
-        const double hold = way.hold_[contact.point];
+        const double hold = hold_of(contact);
         const Vec3 was = contact.place;
         if (!find_place(onto, x, contact, corner, gradient)) {
             const Vec3 p = contact.place;
@@ -77,7 +82,7 @@ struct ContactWay::Kernel {
     template <bool kOwn>
     SWAGE_INLINE void find(Contact& contact, const ContactMemory& last, Plane* plane,
                            CellCorners& corner, CellGradient& gradient, Meeting& at) const {
-        const double hold = way.hold_[contact.point];
+        const double hold = hold_of(contact);
         Vec4 x{};
         for (int c = 0; c < contact.carriers; ++c) {
             x += double(contact.share[c]) * a.motion(contact.carrier[c]).place;
@@ -100,10 +105,10 @@ struct ContactWay::Kernel {
         const double size = std::sqrt(dot3(slope, slope));
         if (!(size > 0)) return;
         const double stretch = onto.matter().lattice.spacing * size;
-        const double whole = way.stiffness_[contact.point] * stretch * stretch;
+        const double whole = asked[contact.point] * stretch * stretch;
         double soft = last.history.touches ? last.soft : 1;
-        if (soft * whole > way.stiffest_[contact.point]) {
-            soft = way.stiffest_[contact.point] / whole;
+        if (soft * whole > way.stiffest(contact.point)) {
+            soft = way.stiffest(contact.point) / whole;
         }
         at.set_stiffness(soft * whole);
         at.normal = slope / size;
@@ -138,7 +143,7 @@ struct ContactWay::Kernel {
         }
         for (int c = 0; c < 8; ++c) at.now -= weight[c] * corner.now[c]->speed;
         sums.took -= dot3(at.now, vec4(contact.dashed));
-        const double hold = way.hold_[contact.point];
+        const double hold = hold_of(contact);
         if (at.is_known() && (is_new || last.sunk > 0)) {
             take_off_sunk(last, is_new, step, hold, at);
         }
@@ -278,7 +283,7 @@ struct ContactWay::Kernel {
         }
         ImpactLaw law = way.law_;
         law.stiffness = share * at.stiffness();
-        law.hold = share * way.hold_[contact.point];
+        law.hold = share * hold_of(contact);
         const double give = push[3] / law.stiffness;
         // The law takes its own spring off again.
         push -= give * share * at.spring;
@@ -298,7 +303,7 @@ struct ContactWay::Kernel {
     SWAGE_INLINE ImpactForce same_as(const Contact& contact, const ContactMemory& last,
                                      const Meeting& at, double share) const {
         ImpactForce f =
-            impact_as_found(share * at.stiffness(), at.depth(), share * way.hold_[contact.point],
+            impact_as_found(share * at.stiffness(), at.depth(), share * hold_of(contact),
                             vec3(at.normal), vec3(at.reach), contact.dashed, last.bond);
         f.history = last.history;
         return f;  // `bound` is found with what is kept
@@ -343,7 +348,7 @@ struct ContactWay::Kernel {
                                   dot3(at.inverse[2], reach));
                 const double k = at.stiffness(), pulled = std::min(at.depth(), 0.0);
                 next.held = 0.5 * k * dot3(reach, reach);
-                next.bound = next.held + spring_energy(k, pulled, way.hold_[contact.point]);
+                next.bound = next.held + spring_energy(k, pulled, hold_of(contact));
                 sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
                 sums.stored += 0.5 * f.stored;
                 sums.friction += 0.5 * f.friction;
@@ -351,7 +356,7 @@ struct ContactWay::Kernel {
                 ++sums.contacts;
                 if (last.history.touches && next.soft < last.soft) {
                     const double was = k * last.soft / next.soft;
-                    const double hold = way.hold_[contact.point], depth = at.depth();
+                    const double hold = hold_of(contact), depth = at.depth();
                     sums.damped +=
                         0.5 * share *
                         (0.5 * (was - k) * dot3(reach, reach) + spring_energy(was, depth, hold) -

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/contact_search.h"
 
-#include <limits>
-
 #include "base/parallel.h"
 #include "geometry/near_pairs.h"
 
@@ -19,30 +17,37 @@ Box box_of_cell(const Vec3Array& position, const std::array<ParticleId, 8>& corn
     return box;
 }
 
+// Of the many points of a body few are near a thin piece.
+void keep_within(const std::vector<Box>& boxes, std::vector<int>& number,
+                 std::vector<Vec3>& point) {
+    Box all;
+    for (const Box& box : boxes) all.grow(box);
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < point.size(); ++n) {
+        if (!all.contains(point[n])) continue;
+        number[kept] = number[n];
+        point[kept++] = point[n];
+    }
+    number.resize(kept);
+    point.resize(kept);
+}
+
 }  // namespace
 
 void find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
                    const ContactList& last, ContactList& found) {
     const Aggregate& other = onto.matter();
     margin += (onto.is_cut() ? onto.beyond() : kSliver) * other.lattice.spacing;
-    // What meets nothing is nowhere.
-    std::vector<Vec3> point(from.points().size(),
-                            Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-    parallel_each(point.size(), kChunk, [&](std::size_t n) {
-        const int p = static_cast<int>(n);
-        if (from.meets(p)) point[n] = from.position(p);
-    });
-    Box all;
-    for (std::size_t n = 0; n < point.size(); ++n) {
-        if (from.meets(static_cast<int>(n))) all.grow(point[n]);
-    }
-    all = all.widened(margin);
+    std::vector<int> meeting = from.meeting();
+    std::vector<Vec3> point(meeting.size());
+    parallel_each(point.size(), kChunk,
+                  [&](std::size_t n) { point[n] = from.position(meeting[n]); });
+    const Box all = box_of(point).widened(margin);
     std::vector<CellId> cell;
     std::vector<Vec3i> site;
     std::vector<Box> box;
     auto run = other.lattice.cell_run.begin();
-    for (CellId id : onto.rim()) {
-        if (!onto.is_whole(id)) continue;
+    for (CellId id : onto.whole_rim()) {
         while (id >= run->first + run->count) ++run;
         const int n = id - run->first;
         std::array<ParticleId, 8> c;
@@ -53,6 +58,7 @@ void find_contacts(const ContactSide& from, const ContactSide& onto, double marg
         site.emplace_back(run->i + n, run->j, run->k);
         box.push_back(one.widened(margin));
     }
+    if (onto.is_thin()) keep_within(box, meeting, point);
     const std::vector<NearPair> pair = near_pairs(point, box);
 
     found.contact.clear();
@@ -68,16 +74,16 @@ void find_contacts(const ContactSide& from, const ContactSide& onto, double marg
     };
     std::vector<double> nearest;  // of those found at this point
     for (std::size_t n = 0; n < pair.size();) {
-        const int p = pair[n].point;
+        const int at = pair[n].point, p = meeting[std::size_t(at)];
         for (; old < last.size() && last.contact[old].point < p; ++old) keep();
         const std::size_t first = found.size();
         for (; old < last.size() && last.contact[old].point == p; ++old) keep();
         const std::size_t kept = found.size();
         nearest.clear();
-        for (; n < pair.size() && pair[n].point == p; ++n) {
+        for (; n < pair.size() && pair[n].point == at; ++n) {
             const int b = pair[n].box;
             if (&from == &onto && from.is_own_place(p, site[b])) continue;
-            const double far = (box[b].center() - point[p]).squaredNorm();
+            const double far = (box[b].center() - point[std::size_t(at)]).squaredNorm();
             bool is_new = true;
             for (std::size_t m = first; m < found.size() && is_new; ++m) {
                 Contact& other_place = found.contact[m];

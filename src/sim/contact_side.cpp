@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "matter/broken_cells.h"
+#include "sim/surface_modulus.h"
 
 namespace swage {
 
@@ -155,7 +156,23 @@ void ContactSide::leave_out(const std::vector<ParticleId>& particles) {
     find_cells();
 }
 
+double ContactSide::give(Solver solver) {
+    if (!give_) give_ = surface_modulus(*matter_, solver) / matter_->lattice.spacing;
+    return *give_;
+}
+
+std::shared_ptr<const PointStiffness> ContactSide::stiffness_on(const OtherSide& other,
+                                                                Solver solver) {
+    for (const auto& known : stiffness_on_) {
+        if (known->on == other) return known;
+    }
+    std::erase_if(stiffness_on_, [](const auto& known) { return known.use_count() == 1; });
+    return stiffness_on_.emplace_back(
+        std::make_shared<const PointStiffness>(*matter_, points(), other, solver));
+}
+
 void ContactSide::find_cells() {
+    stiffness_on_.clear();
     rim_ = molded_->skin();
     if (is_thin() || touch_.size() > touch_.own()) {
         cut_ = is_thin() ? ends_ : std::make_shared<const CutSurface>(*matter_, touch_.whole());
@@ -163,6 +180,13 @@ void ContactSide::find_cells() {
         std::set_union(rim_.begin(), rim_.end(), cut_->skin().begin(), cut_->skin().end(),
                        std::back_inserter(both));
         rim_ = std::move(both);
+    }
+    whole_rim_.clear();
+    std::copy_if(rim_.begin(), rim_.end(), std::back_inserter(whole_rim_),
+                 [&](CellId cell) { return is_whole(cell); });
+    meeting_.clear();
+    for (int p = 0; p < static_cast<int>(touch_.size()); ++p) {
+        if (touch_.meets(p)) meeting_.push_back(p);
     }
     std::vector<char> taken(matter_->particle_count(), 0);
     for (CellId cell : rim_) {

@@ -12,6 +12,7 @@
 #include "matter/touch_points.h"
 #include "sim/contact_patch.h"
 #include "sim/cut_surface.h"
+#include "sim/point_stiffness.h"
 #include "sim/rest_surface.h"
 
 namespace swage {
@@ -37,12 +38,15 @@ class ContactSide {
     // The body's own; those of new surface come after them.
     std::size_t own_points() const { return touch_.own(); }
     bool meets(int point) const { return touch_.meets(point); }
+    const std::vector<int>& meeting() const { return meeting_; }  // points, in their order
     // Of matter/touch_points.h.
     const Vec3i& home(int point) const { return touch_.home()[std::size_t(point)]; }
     bool is_loose(int point) const { return touch_.is_loose(point); }
     Vec3 position(int point) const {
         return points().position(std::size_t(point), matter_->particle_position);
     }
+    double give(Solver solver);  // OtherSide::give
+    std::shared_ptr<const PointStiffness> stiffness_on(const OtherSide& other, Solver solver);
     // Of all ways that this side is part of.
     ContactPatch& patch() { return patch_; }
     const ContactPatch& patch() const { return patch_; }
@@ -70,6 +74,7 @@ class ContactSide {
     }
     // Cells less than a spacing deep, in their order.
     const std::vector<CellId>& rim() const { return rim_; }
+    const std::vector<CellId>& whole_rim() const { return whole_rim_; }  // of these
     // A whole cell not deep inside, which a point may meet.
     bool may_hold(CellId cell) const {
         return cell >= 0 && touch_.whole()[cell] &&
@@ -123,13 +128,17 @@ class ContactSide {
     Vec3 own_place(int point) const { return own_place_[point].cast<double>(); }
 
     Aggregate* matter_;
+    std::optional<double> give_;
+    // As the points are, that ways have.
+    std::vector<std::shared_ptr<const PointStiffness>> stiffness_on_;
     ContactPatch patch_;
     bool itself_;
     TouchPoints touch_;
     std::shared_ptr<const RestSurface> molded_;
     std::shared_ptr<const CutSurface> ends_;  // null: no thin piece
     std::shared_ptr<const CutSurface> cut_;   // null where all is whole
-    std::vector<CellId> rim_;
+    std::vector<CellId> rim_, whole_rim_;
+    std::vector<int> meeting_;
     std::vector<ParticleId> skin_;
     // With itself: of each point its place at molding, from the lattice's origin, in cells.
     std::vector<Eigen::Vector3f> own_place_;

@@ -48,10 +48,7 @@ ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& 
       scale_(settings.stiffness_of_contacts()),
       own_(from.matter().lattice.cell_count) {
     const Material &m = from.matter().material, &n = onto.matter().material;
-    const double soft = surface_modulus(from.matter(), settings.solver) /
-                        from.matter().lattice.spacing,
-                 other = surface_modulus(onto.matter(), settings.solver) /
-                         onto.matter().lattice.spacing;
+    const double soft = from.give(settings.solver), other = onto.give(settings.solver);
     const double e = shared_restitution(m.restitution, soft, n.restitution, other);
     law_ = {.stiffness = 0,
             .restitution = e,
@@ -73,7 +70,7 @@ void ContactWay::part() {
     next_ = {};
     plane_ = {};
     chunk_ = {};
-    stiffness_ = stiffest_ = hold_ = {};
+    points_ = {};
     point_push_ = cell_push_ = {};
     sums_ = {};
     own_gone_ = {};
@@ -119,24 +116,33 @@ void ContactWay::restore(const State& state) {
 }
 
 void ContactWay::hand_on(ByteWriter& out) {
-    out(has_changed_, begins_, gone_, own_gone_, list_, stiffness_);
+    std::vector<double> asked;  // of each contact
+    for (const Contact& contact : list_.contact) {
+        asked.push_back(points_->asked[std::size_t(contact.point)]);
+    }
+    out(has_changed_, begins_, gone_, own_gone_, list_, is_near(), asked);
 }
 
 void ContactWay::take_on(ByteReader& in, double step) {
-    in(has_changed_, begins_, gone_, own_gone_, list_, stiffness_);
-    if (!is_near()) return;
-    const std::vector<double> were = stiffness_;
+    bool was_near;
+    std::vector<double> asked;
+    in(has_changed_, begins_, gone_, own_gone_, list_, was_near, asked);
+    if (!was_near) return;
     set_stiffness(step);
     for (std::size_t n = 0; n < list_.size(); ++n) {
-        const auto point = static_cast<std::size_t>(list_.contact[n].point);
-        if (were[point] == stiffness_[point]) continue;
-        list_.memory[n].soft *= were[point] / stiffness_[point];
+        const double now = points_->asked[std::size_t(list_.contact[n].point)];
+        if (asked[n] != now) list_.memory[n].soft *= asked[n] / now;
     }
 }
 
 void ContactWay::search(double margin) {
     find_contacts(*from_, *onto_, margin, list_, spare_);
     std::swap(list_, spare_);
+    if (from_->is_thin() || onto_->is_thin()) {  // they may be many, and most have few contacts
+        list_.contact.shrink_to_fit();
+        list_.memory.shrink_to_fit();
+        spare_ = {};
+    }
     leave_out_let_be();
     is_found_ = false;
     if (is_static()) meet_anew();
@@ -190,20 +196,23 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
     set_stiffness(step);
 }
 
+OtherSide ContactWay::as_other(ContactSide& side) const {
+    const double hold =
+        is_static()
+            ? 0
+            : 0.5 * (from_->matter().material.stickiness + onto_->matter().material.stickiness);
+    return {.give = side.give(solver_),
+            .spacing = side.matter().lattice.spacing,
+            .hold = hold,
+            .scale = scale_,
+            .most = step_ > 0 ? kMeetShare / (step_ * step_) : 0,
+            .is_itself = is_own()};
+}
+
 void ContactWay::set_stiffness(double step) {
-    const Aggregate &a = from_->matter(), &b = onto_->matter();
-    const SurfacePoints& points = from_->points();
-    const double hold = is_static() ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
-    stiffness_ = stiffness_on_body(a, points, b, scale_, solver_);
-    hold_.clear();
-    for (std::size_t p = 0; p < points.size(); ++p) hold_.push_back(hold * area_on(b, points, p));
-    stiffest_.assign(points.size(), std::numeric_limits<double>::infinity());
-    if (!(step > 0)) return;
-    // Half of which acts where the other way does as much.
-    const double most = kMeetShare / (step * step);
-    stiffest_ = is_own() ? stiffest_of_points(a, points, stiffness_, most)
-                         : stiffest_on_body(a, points, stiffness_, b, onto_->points(), scale_,
-                                            solver_, most);
+    step_ = step;
+    points_ = from_->stiffness_on(as_other(*onto_), solver_);
+    borne_ = is_own() ? 1 : onto_->stiffness_on(as_other(*from_), solver_)->borne;
 }
 
 void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {
@@ -344,7 +353,7 @@ void ContactWay::add_stiffness(std::vector<double>& stiffness) const {
     const SurfacePoints& points = from_->points();
     const double share = is_own() ? most_share() : share_;  // a body's own go by the pair of boxes
     for (const Contact& contact : list_.contact) {
-        const double k = share * stiffness_[contact.point];
+        const double k = share * points_->asked[std::size_t(contact.point)];
         const auto by = points.carriers(static_cast<std::size_t>(contact.point));
         for (int c = 0; c < 8; ++c) stiffness[by.corner[c]] += k * std::abs(by.weight[c]);
         // Until candidates are found anew the place may move by half a cell.

@@ -24,9 +24,11 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 
 #include "sim/contact_list.h"
 #include "sim/held_point.h"
+#include "sim/limited_stiffness.h"
 #include "sim/own_shares.h"
 #include "sim/settings.h"
 
@@ -112,16 +114,26 @@ class ContactWay {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(has_changed_, begins_, stiffness_, stiffest_, hold_, is_let_be_, share_, gone_, broken_,
-           turned_, kept_, own_gone_, list_, meeting_, next_, plane_, is_found_, point_push_,
-           cell_push_, met_, sums_);
+        bool is_near = this->is_near();
+        io(is_near, step_);
+        if constexpr (Io::kReads) {
+            points_ = nullptr;
+            if (is_near) set_stiffness(step_);
+        }
+        io(has_changed_, begins_, is_let_be_, share_, gone_, broken_, turned_, kept_, own_gone_,
+           list_, meeting_, next_, plane_, is_found_, point_push_, cell_push_, met_, sums_);
     }
 
   private:
     bool is_own() const { return from_ == onto_; }
     // Nothing has a speed.
     bool is_static() const { return !in_motion(solver_); }
-    bool is_near() const { return !stiffness_.empty(); }
+    bool is_near() const { return points_ != nullptr; }
+    double stiffest(int point) const {
+        const auto p = static_cast<std::size_t>(point);
+        return stiffest_on_body(points_->stiffest[p], borne_, points_->asked[p]);
+    }
+    OtherSide as_other(ContactSide& side) const;
     // How a point meets the cell that holds it, at the present positions. What has no vector lies
     // in the fourth lane of one.
     struct alignas(32) Meeting {
@@ -215,16 +227,18 @@ class ContactWay {
 
     ContactSide *from_, *onto_;
     Solver solver_;
-    double scale_;                                           // contact_stiffness
-    bool has_changed_ = false;                               // since the last commit
-    bool begins_ = true;                                     // nothing committed yet
-    ImpactLaw law_{};                                        // stiffness and hold: of each point
-    std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
-    std::vector<char> is_let_be_;                            // likewise; empty: none is
-    double share_ = 0.5;                                     // of what this way would do alone
-    double gone_ = 0;                 // ContactHeld::gone, of points, so far [J]
-    double broken_ = 0, turned_ = 0;  // push()
-    double kept_ = 0;                 // kept()
+    double scale_;                                  // contact_stiffness
+    bool has_changed_ = false;                      // since the last commit
+    bool begins_ = true;                            // nothing committed yet
+    ImpactLaw law_{};                               // stiffness and hold: of each point
+    double step_ = 0;                               // that these are for [s]
+    std::shared_ptr<const PointStiffness> points_;  // null: the sides are not near
+    double borne_ = 1;                              // by the other side
+    std::vector<char> is_let_be_;                   // of each point; empty: none is
+    double share_ = 0.5;                            // of what this way would do alone
+    double gone_ = 0;                               // ContactHeld::gone, of points, so far [J]
+    double broken_ = 0, turned_ = 0;                // push()
+    double kept_ = 0;                               // kept()
     // Of a body with itself; the last is in the place of gone_.
     OwnShares own_;
     std::vector<OwnSpot> own_spot_{};

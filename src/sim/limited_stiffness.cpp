@@ -25,7 +25,44 @@ LimitedPoints on_rigid(const Aggregate& matter, const SurfacePoints& points, dou
     return limited;
 }
 
-// s of stiffest_on_body().
+LimitedPoints one_way(const MeetingBody& from, const MeetingBody& onto, const SimSettings& settings,
+                      double most) {
+    const double scale = settings.stiffness_of_contacts();
+    const auto asked = [&](const MeetingBody& one, const MeetingBody& other) {
+        const double spacing = other.matter.lattice.spacing;
+        return stiffness_on_body(one.matter, one.touch.points(),
+                                 surface_modulus(other.matter, settings.solver) / spacing, spacing,
+                                 scale, settings.solver);
+    };
+    LimitedPoints limited;
+    limited.asked = asked(from, onto);
+    limited.stiffest = stiffest_of_points(from.matter, from.touch.points(), limited.asked, most);
+    const double share = share_borne(onto.matter, onto.touch.points(), asked(onto, from), most);
+    for (std::size_t p = 0; p < limited.asked.size(); ++p) {
+        limited.stiffest[p] = stiffest_on_body(limited.stiffest[p], share, limited.asked[p]);
+    }
+    return limited;
+}
+
+}  // namespace
+
+double area_on(double spacing, const SurfacePoints& points, std::size_t point) {
+    return std::min(points.area(point), kFaces * spacing * spacing);
+}
+
+std::vector<double> stiffness_on_body(const Aggregate& from, const SurfacePoints& points,
+                                      double give, double spacing, double contact_stiffness,
+                                      Solver solver) {
+    const SurfaceLayer layer(from, points, solver);
+    std::vector<double> stiffness;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const double one = layer.modulus(p) / from.lattice.spacing;
+        const double area = area_on(spacing, points, p);
+        stiffness.push_back(contact_stiffness * one * give / (one + give) * area);
+    }
+    return stiffness;
+}
+
 double share_borne(const Aggregate& matter, const SurfacePoints& points,
                    const std::vector<double>& stiffness, double most) {
     std::vector<Vec3> carried(matter.particle_count(), Vec3::Zero());
@@ -50,50 +87,6 @@ double share_borne(const Aggregate& matter, const SurfacePoints& points,
                                            : std::numeric_limits<double>::infinity());
     }
     return limited.share();
-}
-
-LimitedPoints one_way(const MeetingBody& from, const MeetingBody& onto, const SimSettings& settings,
-                      double most) {
-    const double scale = settings.stiffness_of_contacts();
-    const SurfacePoints& points = from.touch.points();
-    LimitedPoints limited;
-    limited.asked = stiffness_on_body(from.matter, points, onto.matter, scale, settings.solver);
-    limited.stiffest = stiffest_on_body(from.matter, points, limited.asked, onto.matter,
-                                        onto.touch.points(), scale, settings.solver, most);
-    return limited;
-}
-
-}  // namespace
-
-double area_on(const Aggregate& onto, const SurfacePoints& points, std::size_t point) {
-    return std::min(points.area(point), kFaces * onto.lattice.spacing * onto.lattice.spacing);
-}
-
-std::vector<double> stiffness_on_body(const Aggregate& from, const SurfacePoints& points,
-                                      const Aggregate& onto, double contact_stiffness,
-                                      Solver solver) {
-    const SurfaceLayer layer(from, points, solver);
-    const double other = surface_modulus(onto, solver) / onto.lattice.spacing;
-    std::vector<double> stiffness;
-    for (std::size_t p = 0; p < points.size(); ++p) {
-        const double one = layer.modulus(p) / from.lattice.spacing;
-        const double area = area_on(onto, points, p);
-        stiffness.push_back(contact_stiffness * one * other / (one + other) * area);
-    }
-    return stiffness;
-}
-
-std::vector<double> stiffest_on_body(const Aggregate& from, const SurfacePoints& points,
-                                     const std::vector<double>& stiffness, const Aggregate& onto,
-                                     const SurfacePoints& others, double contact_stiffness,
-                                     Solver solver, double most) {
-    std::vector<double> stiffest = stiffest_of_points(from, points, stiffness, most);
-    const double share = share_borne(
-        onto, others, stiffness_on_body(onto, others, from, contact_stiffness, solver), most);
-    for (std::size_t p = 0; p < stiffest.size() && share < 1; ++p) {
-        stiffest[p] = std::min(stiffest[p], share * stiffness[p]);
-    }
-    return stiffest;
 }
 
 void LimitedPoints::add(const LimitedPoints& others) {

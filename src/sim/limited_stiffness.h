@@ -2,6 +2,7 @@
 // How stiff contacts and grips are asked to be, and what explicit steps leave of that.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -11,12 +12,13 @@
 namespace swage {
 
 // Of the surface that a point stands for, what counts on a body [m2]: it pushes one cell there,
-// which larger cells' points would drive in alone.
-double area_on(const Aggregate& onto, const SurfacePoints& points, std::size_t point);
+// which larger cells' points would drive in alone. `spacing`: of the body [m].
+double area_on(double spacing, const SurfacePoints& points, std::size_t point);
 
-// Asked of each point of a body on another, by one way alone (sim/body_contact.h) [N/m].
+// Asked of each point of a body on another, by one way alone (sim/body_contact.h) [N/m]. Of the
+// other, `give`: its surface_modulus() over its spacing [Pa/m].
 std::vector<double> stiffness_on_body(const Aggregate& from, const SurfacePoints& points,
-                                      const Aggregate& onto, double contact_stiffness,
+                                      double give, double spacing, double contact_stiffness,
                                       Solver solver);
 
 // What steps leave each of these at the most [N/m]: its carriers follow it (stiffest_of_points()),
@@ -31,10 +33,12 @@ std::vector<double> stiffness_on_body(const Aggregate& from, const SurfacePoints
 // other would have its springs softened under load. With the first bound alone a stiff, heavy body
 // pressed a light one harder than steps can follow, and a third of the light one's energy came
 // from nowhere.
-std::vector<double> stiffest_on_body(const Aggregate& from, const SurfacePoints& points,
-                                     const std::vector<double>& stiffness, const Aggregate& onto,
-                                     const SurfacePoints& others, double contact_stiffness,
-                                     Solver solver, double most);
+// Here `share` is s, by share_borne() of the other body; 1: it bears all.
+inline double stiffest_on_body(double of_points, double share, double stiffness) {
+    return share < 1 ? std::min(of_points, share * stiffness) : of_points;
+}
+double share_borne(const Aggregate& matter, const SurfacePoints& points,
+                   const std::vector<double>& stiffness, double most);
 
 // Points that are pressed alike.
 struct LimitedPoints {
