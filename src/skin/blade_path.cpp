@@ -9,6 +9,7 @@
 #include "base/principal_axes.h"
 #include "geometry/disjoint_sets.h"
 #include "skin/flat_segment.h"
+#include "skin/sheet_normals.h"
 
 namespace swage {
 
@@ -17,6 +18,8 @@ namespace {
 using Sweep = std::vector<std::array<Vec3, 3>>;
 
 constexpr double kLeast = 0.1736;  // the cosine of 80 degrees
+// Of the angle between two that lean by as much to opposite sides.
+constexpr double kMostTurned = 2 * kLeast * kLeast - 1;
 constexpr int kRounds = 200;
 // Of plane and relief, how far off their triangles may be.
 constexpr double kLooser = 50;
@@ -31,7 +34,6 @@ bool holds(const std::array<Vec2, 3>& t, const Vec2& p) {
 }
 
 struct Areas {
-    std::vector<Vec3> normal;  // of triangles that have an area, all to one side
     Vec3 sum = Vec3::Zero();
     Vec3 middle = Vec3::Zero();
 };
@@ -46,7 +48,6 @@ std::optional<Areas> areas_of(const Sweep& sweep) {
         areas.sum += own;
         areas.middle += own.norm() * (t[0] + t[1] + t[2]) / 3;
         total += own.norm();
-        if (own.norm() > 0) areas.normal.push_back(own.normalized());
     }
     if (!(total > 0)) return std::nullopt;
     areas.middle /= total;
@@ -65,6 +66,30 @@ Vec3 middle_of(const std::vector<Vec3>& directions) {
         middle = (middle + (farthest - middle) / (round + 1)).normalized();
     }
     return middle;
+}
+
+// The direction from which they lean away least. A sheet may look along it or against it.
+struct Lean {
+    Vec3 from;
+    double least = -1;  // the cosine of the most
+};
+
+// Of two or more sheets those are tried that lie about as most of their normals or across these.
+Lean least_lean(const std::vector<std::vector<Vec3>>& sheets, const Mat3& axes) {
+    Lean best;
+    for (int axis = 2; axis >= (sheets.size() > 1 ? 0 : 2); --axis) {
+        std::vector<Vec3> all;
+        for (const std::vector<Vec3>& sheet : sheets) {
+            Vec3 sum = Vec3::Zero();
+            for (const Vec3& one : sheet) sum += one;
+            const double side = sum.dot(axes.col(axis)) < 0 ? -1 : 1;
+            for (const Vec3& one : sheet) all.push_back(side * one);
+        }
+        Lean lean{middle_of(all), 1};
+        for (const Vec3& one : all) lean.least = std::min(lean.least, lean.from.dot(one));
+        if (lean.least > best.least) best = lean;
+    }
+    return best;
 }
 
 void lay_flat(const Sweep& sweep, BladePath& path) {
@@ -298,20 +323,16 @@ std::optional<BladePath> flat_path(const Sweep& sweep, double tolerance) {
 std::optional<BladePath> bent_path(const Sweep& sweep, const Box& box, double tolerance) {
     const auto areas = areas_of(sweep);
     if (!areas) return std::nullopt;
-    // Triangles tell no side, as a blade may come back: they are taken to look along one of the
-    // directions in which most of them do.
+    const std::vector<std::vector<Vec3>> sheets = sheet_normals(sweep, kMostTurned);
     Mat3 square = Mat3::Zero();
-    for (const Vec3& normal : areas->normal) square += normal * normal.transpose();
+    for (const std::vector<Vec3>& sheet : sheets) {
+        for (const Vec3& normal : sheet) square += normal * normal.transpose();
+    }
     const Mat3 axes = principal_axes(square).axis;
-    for (const int axis : {2, 1, 0}) {
-        std::vector<Vec3> normal = areas->normal;
-        for (Vec3& one : normal) one *= one.dot(axes.col(axis)) < 0 ? -1 : 1;
-        const Vec3 middle = middle_of(normal);
-        double least = 1;
-        for (const Vec3& one : normal) least = std::min(least, middle.dot(one));
-        if (least < kLeast) continue;
-        BladePath path = over_plane(sweep, areas->middle, middle);
-        path.steepest = 1 / least;
+    const Lean lean = least_lean(sheets, axes);
+    if (lean.least >= kLeast) {
+        BladePath path = over_plane(sweep, areas->middle, lean.from);
+        path.steepest = 1 / lean.least;
         if (lay_relief(sweep, tolerance, path)) return path;
     }
     for (const int axis : {0, 1, 2}) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "skin/blade_path.h"
 
+#include <functional>
+
 #include "tests/catch.h"
 
 using namespace swage;
@@ -48,4 +50,51 @@ TEST_CASE("a blade at rest beside what another cuts has no path that bends") {
     REQUIRE(found.path.size() == 1);
     CHECK(std::abs(found.path[0].normal.x()) == Approx(1));
     CHECK(!found.has_folded);
+}
+
+namespace {
+
+// x = off(y, z).
+std::vector<std::array<Vec3, 3>> sweep_over(const std::function<double(double, double)>& off) {
+    constexpr double kReach = 0.23;
+    constexpr int kCount = 92, kRows = 8;
+    const auto at = [&](int i, int j) -> Vec3 {
+        const double y = kReach * (2.0 * i / kCount - 1), z = kReach * (2.0 * j / kRows - 1);
+        return {off(y, z), y, z};
+    };
+    std::vector<std::array<Vec3, 3>> sweep;
+    for (int i = 0; i < kCount; ++i) {
+        for (int j = 0; j < kRows; ++j) {
+            sweep.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            sweep.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    }
+    return sweep;
+}
+
+}  // namespace
+
+TEST_CASE("a path over a plane is found from which it leans by less than 80 degrees") {
+    // Of waves as steep as 60 degrees as many normals lie across the plane as along it: beside a
+    // whole number of waves the axes of them all stand askew.
+    const double steep = GENERATE(1.2, 1.85, 2.0, 2.15, 5.0);
+    const double count = GENERATE(20.4, 23.1, 25.8);
+    const double phase = GENERATE(0.0, 0.3, 0.4);
+    INFO(steep << " " << count << " " << phase);
+    const auto off = [&](double y, double z) {
+        return steep / count * std::sin(count * y + 0.3 * z + phase);
+    };
+    std::vector<std::array<Vec3, 3>> sweep = sweep_over(off);
+    const bool comes_back = GENERATE(false, true);
+    if (comes_back) {
+        const std::vector<std::array<Vec3, 3>> there = sweep;
+        for (const auto& t : there) sweep.push_back({t[0], t[2], t[1]});
+    }
+    const Box box{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+    const auto path = bent_path(sweep, box, 1e-4);
+    REQUIRE(path);
+    CHECK(path->first == 0);
+    CHECK(std::abs(path->height(Vec3(off(0.1, 0.05), 0.1, 0.05))) < 0.02);
+    // As one that looks for the least finds it: along x they lean by as much as they are steep.
+    CHECK(path->steepest < 1.02 * std::sqrt(1 + (steep * steep) * 1.01));
 }
