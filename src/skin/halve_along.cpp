@@ -16,6 +16,19 @@ namespace swage {
 namespace {
 
 constexpr int kRounds = 20;  // a millionth of what was there
+// Of the longest edge: none shorter is halved for being crossed twice.
+constexpr double kLeastTwice = 1.0 / 16;
+
+// Whether the path, which has both ends on one side, goes over it and back.
+bool is_crossed_twice(const BladePath& path, const std::vector<Vec3>& position,
+                      const std::vector<double>& height, int from, int to) {
+    if ((height[from] > 0) != (height[to] > 0)) return false;
+    for (const double share : {0.25, 0.5, 0.75}) {
+        const Vec3 place = position[from] + share * (position[to] - position[from]);
+        if ((path.height(place) > 0) != (height[from] > 0)) return true;
+    }
+    return false;
+}
 
 std::set<Ends> long_edges(const BladePath& path, double longest, const TriMesh& mesh,
                           const std::vector<Vec3>& position) {
@@ -30,13 +43,16 @@ std::set<Ends> long_edges(const BladePath& path, double longest, const TriMesh& 
             off = std::min(off, std::abs(height[t[k]]));
         }
         const double most = *std::ranges::max_element(length);
-        if (most <= longest || off > path.steepest * most ||
-            !path.near(path.flat(position[t[0]]), most + longest)) {
+        if (off > path.steepest * most || !path.near(path.flat(position[t[0]]), most + longest)) {
             continue;
         }
         for (int k = 0; k < 3; ++k) {
-            if (length[k] > std::max(longest, kNearLongest * most)) {
-                found.insert(ends(t[k], t[(k + 1) % 3]));
+            const auto edge = ends(t[k], t[(k + 1) % 3]);
+            const bool is_long =
+                most > longest && length[k] > std::max(longest, kNearLongest * most);
+            if (is_long || (length[k] > kLeastTwice * longest &&
+                            is_crossed_twice(path, position, height, edge.first, edge.second))) {
+                found.insert(edge);
             }
         }
     }

@@ -24,6 +24,10 @@ namespace {
 // A vertex nearer to the path than this share of its shortest edge counts as lying on it, so that
 // no slivers are cut off.
 constexpr double kOnPath = 0.01;
+// Vertices of one side, so few and so near to a path that bends, are told theirs by what is around
+// them; nearness as a share of the shortest edge.
+constexpr int kFew = 6;
+constexpr double kLone = 0.5;
 // Spacings, within which lines on the section are drawn to what is there.
 constexpr double kDrawn = 0.02;
 
@@ -94,6 +98,7 @@ class Splitter {
             height_[v] = path_.height(position_[v]);
             sign_[v] = std::abs(height_[v]) <= kOnPath * shortest[v] ? 0 : height_[v] > 0 ? 1 : -1;
         }
+        if (path_.relief) join_lone(shortest);
         for (const Corners& t : mesh_.triangle) {
             for (int k = 0; k < 3; ++k) {
                 const auto [low, high] = ends(t[k], t[(k + 1) % 3]);
@@ -105,6 +110,30 @@ class Splitter {
             }
         }
         used_.assign(split_.cut.size(), true);
+    }
+
+    // Few vertices near the path that hang together and whose neighbours are all on its other side,
+    // as right under a ridge that the path has between them: around them there would be a section
+    // of its own, of no area.
+    void join_lone(const std::vector<double>& shortest) {
+        DisjointSets like(sign_.size());
+        std::vector<char> is_far(sign_.size(), 0);
+        std::vector<int> count(sign_.size(), 0);
+        for (const Corners& t : mesh_.triangle) {
+            for (int k = 0; k < 3; ++k) {
+                const int a = t[k], b = t[(k + 1) % 3];
+                if (sign_[a] == sign_[b]) like.unite(a, b);
+            }
+        }
+        for (std::size_t v = 0; v < sign_.size(); ++v) {
+            const int set = like.root(static_cast<int>(v));
+            ++count[set];
+            if (std::abs(height_[v]) > kLone * path_.steepest * shortest[v]) is_far[set] = 1;
+        }
+        for (std::size_t v = 0; v < sign_.size(); ++v) {
+            const int set = like.root(static_cast<int>(v));
+            if (count[set] <= kFew && !is_far[set]) sign_[v] = -sign_[v];
+        }
     }
 
     int side_of(const Corners& raw, int parent) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cuts along paths that bend: of a bent edge, round a bend, and of a blade that turns.
 #include <functional>
+#include <random>
 
 #include "tests/skin/cut_fixture.h"
 
@@ -36,16 +37,18 @@ std::vector<BentPath> paths() {
     };
 }
 
-// Squares of a tenth of a cell, so that their chords are off by less than 1e-4 m.
-Sweep sweep_of(const BentPath& path, double reach = 0.23) {
+// Squares of a tenth of a cell, so that their chords are off by less than 1e-4 m; or so many
+// rows of them along z.
+Sweep sweep_of(const BentPath& path, double reach = 0.23, int rows = 0) {
     Sweep sweep;
     const int count = static_cast<int>(std::lround(2 * reach / 0.005));
+    if (rows == 0) rows = count;
     const auto at = [&](int i, int j) -> Vec3 {
-        const double y = reach * (2.0 * i / count - 1), z = reach * (2.0 * j / count - 1);
+        const double y = reach * (2.0 * i / count - 1), z = reach * (2.0 * j / rows - 1);
         return {path.off(y, z), y, z};
     };
     for (int i = 0; i < count; ++i) {
-        for (int j = 0; j < count; ++j) {
+        for (int j = 0; j < rows; ++j) {
             sweep.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
             sweep.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
         }
@@ -200,6 +203,46 @@ TEST_CASE("where a path that bends ends inside, the cut does") {
         }
     }
     CHECK(std::abs(high) < 0.5 * f.matter.lattice.spacing);
+}
+
+// Whose points within faces and edges lie anyhow.
+TriMesh uneven_bar(std::mt19937& random) {
+    TriMesh mesh = bar();
+    const Vec3 half(.5, .15, .15), step(1 / 24.0, .3 / 9, .3 / 9);
+    for (Vec3& p : mesh.position) {
+        for (int k = 0; k < 3; ++k) {
+            const double share = random() / 4294967296.0;
+            if (std::abs(std::abs(p[k]) - half[k]) > 1e-9) p[k] += 0.7 * (share - 0.5) * step[k];
+        }
+    }
+    return mesh;
+}
+
+TEST_CASE("a corner of a path closes the skin on both sides, however sharp") {
+    // The seed of an uneven mesh; 0: an even one.
+    const auto [slope, seed] =
+        GENERATE(table<double, unsigned>({{2.0, 0}, {3.0, 0}, {4.4, 0}, {5.5, 1}, {5.5, 3}}));
+    std::mt19937 random(seed);
+    for (int n = 0; n < 24; ++n) {
+        const double y0 = 0.01 + 0.0037 * (n - 12), deep = slope * 0.075 + 0.0011 * n;
+        const BentPath path{"", [&](double y, double) { return slope * std::abs(y - y0) - deep; }};
+        INFO(slope << " " << seed << " " << y0 << " " << deep);
+        Fixture f(seed == 0 ? bar() : uneven_bar(random));
+        const double whole = signed_volume(f.mesh);
+        const CutResult result = f.cut(sweep_of(path, 0.23, 4));
+        CHECK(!result.has_folded);
+        CHECK(result.open_parts == 0);
+        REQUIRE(test::is_closed(f.mesh));
+        const std::vector<TriMesh> parts = parts_of(f.mesh);
+        REQUIRE(parts.size() == 2);
+        double least = 1, sum = 0;
+        for (const TriMesh& part : parts) {
+            least = std::min(least, signed_volume(part));
+            sum += signed_volume(part);
+        }
+        CHECK(sum == Approx(whole).epsilon(1e-9));
+        CHECK(least > 0);
+    }
 }
 
 namespace {
