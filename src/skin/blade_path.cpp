@@ -190,7 +190,8 @@ std::optional<BladePath> round_axis(const Sweep& sweep, const Vec3& point, const
     for (int corner = 0; corner < 8; ++corner) {
         low = std::min(low, axis.dot(box.corner(corner) - point));
     }
-    path.first = radius / count - low;
+    path.radius = radius / count;
+    path.first = path.radius - low;
     lay_flat(sweep, path);
     return path;
 }
@@ -283,6 +284,18 @@ Vec3 BladePath::world(const Vec2& p) const {
     const double far = p.norm();
     const Vec2 out = far > 0 ? Vec2(p / far) : Vec2(1, 0);
     return point + over * (out[0] * across + out[1] * normal) + (far - first) * up;
+}
+
+// Far out on a band what lies between is not what lies between on the path.
+Vec2 BladePath::middle(const Vec2& a, const Vec2& b) const {
+    if (first == 0) return 0.5 * (a + b);
+    return 0.5 * (a.norm() + b.norm()) * (a.normalized() + b.normalized()).normalized();
+}
+
+Vec2 BladePath::middle(const Vec2& a, const Vec2& b, const Vec2& c) const {
+    if (first == 0) return a / 3 + b / 3 + c / 3;
+    return (a.norm() + b.norm() + c.norm()) / 3 *
+           (a.normalized() + b.normalized() + c.normalized()).normalized();
 }
 
 Vec3 BladePath::rise(const Vec3& p) const {

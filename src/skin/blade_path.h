@@ -31,6 +31,7 @@ struct BladePath {
     // More than 0 of a path round the axis `up` through `point`: what is added to the way along
     // that to have a distance from the origin [m].
     double first = 0;
+    double radius = 0;                          // of that one, in the mean [m]
     std::vector<std::array<Vec2, 3>> triangle;  // flat
     std::vector<std::array<Vec2, 2>> outline;   // edges that only one triangle has
     std::shared_ptr<const Relief> relief;       // none: the path is the plane
@@ -41,6 +42,8 @@ struct BladePath {
     double height(const Vec3& p) const;
     Vec2 flat(const Vec3& p) const;
     Vec3 world(const Vec2& p) const;
+    Vec2 middle(const Vec2& a, const Vec2& b) const;
+    Vec2 middle(const Vec2& a, const Vec2& b, const Vec2& c) const;
     Vec3 rise(const Vec3& p) const;  // unit: where height() grows
     bool covers(const Vec2& p) const { return near(p, 0); }
     bool near(const Vec2& p, double reach) const;  // within `reach` [m] of the swept part

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 
+#include "base/portable_math.h"
 #include "skin/flat_segment.h"
 
 namespace swage {
@@ -64,32 +65,116 @@ bool wind(Triangulation& cdt, const Direction& direction) {
     return true;
 }
 
-double distance_to_segments(const Section& section, const Vec2& p) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto* lines : {&section.segment, &section.line}) {
-        for (const auto& [a, b] : *lines) {
-            least = std::min(least, distance2_to_segment(p, section.point[a], section.point[b]));
+// Of a band, that no coordinate comes near what a double holds: lengths along it in radii.
+constexpr double kLongest = 150;
+
+// How the places of a section are seen as they lie on the path: those of a band unrolled, around
+// and along it.
+class Layout {
+  public:
+    explicit Layout(const Section& section) : section_(section) {
+        if (section.radius == 0) return;
+        double high = 0;
+        low_ = std::numeric_limits<double>::infinity();
+        for (const Vec2& p : section.point) {
+            unrolled_.push_back(unrolled(p));
+            low_ = std::min(low_, unrolled_.back()[1]);
+            high = std::max(high, unrolled_.back()[1]);
+        }
+        scale_ = std::max(section.radius, (high - low_) / kLongest);
+        rise_ = high - low_;
+    }
+
+    // Where triangles of a band have the angles that they have on the path.
+    Point drawn(const Vec2& p) const {
+        if (section_.radius == 0) return Point(p[0], p[1]);
+        const double far = p.norm();
+        const double grown = portable::exp((far - low_) / scale_) / far;
+        return Point(grown * p[0], grown * p[1]);
+    }
+
+    double distance2(const Vec2& p, const Vec2& q) const {
+        if (section_.radius == 0) return (p - q).squaredNorm();
+        return way(unrolled(p), unrolled(q)).squaredNorm();
+    }
+
+    double distance_to_segments(const Vec2& p) const {
+        const bool is_band = section_.radius > 0;
+        const Vec2 own = is_band ? unrolled(p) : p;
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto* lines : {&section_.segment, &section_.line}) {
+            for (const auto& [a, b] : *lines) {
+                if (!is_band) {
+                    const Vec2 &from = section_.point[a], &to = section_.point[b];
+                    least = std::min(least, distance2_to_segment(p, from, to));
+                    continue;
+                }
+                const Vec2 from = way(own, unrolled_[a]);
+                const Vec2 to = from + way(unrolled_[a], unrolled_[b]);
+                least = std::min(least, distance2_to_segment(Vec2::Zero(), from, to));
+            }
+        }
+        return std::sqrt(least);
+    }
+
+    // Rows of points, each two beside each other this far apart.
+    template <typename F>
+    void for_each_of_rows(double apart, const F& f) const {
+        const double rise = apart * std::sqrt(0.75);
+        if (section_.radius > 0) {
+            const int count =
+                std::max(3, static_cast<int>(std::lround(2 * kPi * section_.radius / apart)));
+            for (int j = 0; j * rise <= rise_; ++j) {
+                for (int i = 0; i < count; ++i) {
+                    const double turn = 2 * kPi * (i + 0.5 * (j & 1)) / count;
+                    f(Vec2((low_ + j * rise) * Vec2(portable::cos(turn), portable::sin(turn))));
+                }
+            }
+            return;
+        }
+        Vec2 low = section_.point.front(), high = low;
+        for (const Vec2& p : section_.point) low = low.cwiseMin(p), high = high.cwiseMax(p);
+        for (int j = 0; low[1] + j * rise <= high[1]; ++j) {
+            for (int i = 0; low[0] + (i + 0.5 * (j & 1)) * apart <= high[0]; ++i) {
+                f(Vec2(low[0] + (i + 0.5 * (j & 1)) * apart, low[1] + j * rise));
+            }
         }
     }
-    return std::sqrt(least);
-}
+
+  private:
+    Vec2 unrolled(const Vec2& p) const {
+        return {section_.radius * portable::atan2(p[1], p[0]), p.norm()};
+    }
+    // The shorter way around.
+    Vec2 way(const Vec2& from, const Vec2& to) const {
+        const double around = 2 * kPi * section_.radius;
+        Vec2 way = to - from;
+        way[0] -= around * std::round(way[0] / around);
+        return way;
+    }
+
+    const Section& section_;
+    std::vector<Vec2> unrolled_;  // of the section's points
+    double low_ = 0, rise_ = 0, scale_ = 1;
+};
 
 // The wishes, then rows of points set off by half a spacing, all at a distance from the segments
 // and from each other.
-std::vector<Vec2> inner_points(const Section& section, const Triangulation& cdt) {
+std::vector<Vec2> inner_points(const Section& section, const Layout& layout,
+                               const Triangulation& cdt) {
     std::vector<Vec2> inner;
     Face hint;
     const auto offer = [&](const Vec2& p, double clearance) {
-        hint = cdt.locate(Point(p[0], p[1]), hint);
+        hint = cdt.locate(layout.drawn(p), hint);
         if (cdt.is_infinite(hint) || hint->info() != 1) return;
-        if (distance_to_segments(section, p) < clearance) return;
+        if (layout.distance_to_segments(p) < clearance) return;
         inner.push_back(p);
     };
     const double a = section.spacing;
     std::size_t wishes = 0;
     const auto is_free = [&](const Vec2& p, double reach) {
         return std::none_of(inner.begin(), inner.begin() + wishes, [&](const Vec2& wish) {
-            return (p - wish).squaredNorm() < reach * reach;
+            return layout.distance2(p, wish) < reach * reach;
         });
     };
     for (const Vec2& p : section.wish) {  // a blade that comes back asks for the same ones again
@@ -97,15 +182,9 @@ std::vector<Vec2> inner_points(const Section& section, const Triangulation& cdt)
         wishes = inner.size();
     }
 
-    Vec2 low = section.point.front(), high = low;
-    for (const Vec2& p : section.point) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    const double rise = a * std::sqrt(0.75);
-    for (int j = 0; low[1] + j * rise <= high[1]; ++j) {
-        for (int i = 0; low[0] + (i + 0.5 * (j & 1)) * a <= high[0]; ++i) {
-            const Vec2 p(low[0] + (i + 0.5 * (j & 1)) * a, low[1] + j * rise);
-            if (is_free(p, 0.5 * a)) offer(p, 0.45 * a);
-        }
-    }
+    layout.for_each_of_rows(a, [&](const Vec2& p) {
+        if (is_free(p, 0.5 * a)) offer(p, 0.45 * a);
+    });
     return inner;
 }
 
@@ -113,12 +192,13 @@ std::vector<Vec2> inner_points(const Section& section, const Triangulation& cdt)
 
 std::optional<SectionTriangles> fill_section(const Section& section) {
     if (section.segment.empty()) return std::nullopt;
+    const Layout layout(section);
     Triangulation cdt;
     std::vector<Vertex> vertex(section.point.size());
     Face hint;
     for (std::size_t n = 0; n < section.point.size(); ++n) {
         const std::size_t before = cdt.number_of_vertices();
-        vertex[n] = cdt.insert(Point(section.point[n][0], section.point[n][1]), hint);
+        vertex[n] = cdt.insert(layout.drawn(section.point[n]), hint);
         if (cdt.number_of_vertices() == before) return std::nullopt;
         vertex[n]->info() = static_cast<int>(n);
         hint = vertex[n]->face();
@@ -142,10 +222,10 @@ std::optional<SectionTriangles> fill_section(const Section& section) {
     if (!wind(cdt, direction)) return std::nullopt;
 
     SectionTriangles result;
-    result.added = inner_points(section, cdt);
+    result.added = inner_points(section, layout, cdt);
     hint = vertex.back()->face();  // constraints have put others in place of the one it was
     for (std::size_t n = 0; n < result.added.size(); ++n) {
-        const Vertex v = cdt.insert(Point(result.added[n][0], result.added[n][1]), hint);
+        const Vertex v = cdt.insert(layout.drawn(result.added[n]), hint);
         v->info() = static_cast<int>(section.point.size() + n);
         hint = v->face();
     }

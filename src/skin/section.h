@@ -17,6 +17,9 @@ struct Section {
     std::vector<Vec2> wish;                   // places inside that should become points
     double spacing = 0;                       // [m] of the points that are added inside
     std::vector<std::array<int, 2>> line;     // inside, that become edges too (section_lines.h)
+    // More than 0 of a section around the origin of a path round an axis, at this distance of which
+    // [m] the band lies: it is filled as it is there, though farther out here it is drawn wider.
+    double radius = 0;
 };
 
 struct SectionTriangles {

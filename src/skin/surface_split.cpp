@@ -30,6 +30,9 @@ constexpr int kFew = 6;
 constexpr double kLone = 0.5;
 // Spacings, within which lines on the section are drawn to what is there.
 constexpr double kDrawn = 0.02;
+// Triangles around a path round an axis, at least: by their chords what lies inside
+// loses 0.13 % then, and 0.3 % where lobes go out and in by a fifth.
+constexpr double kSides = 72;
 
 // One triangle of the old surface, or a part of one.
 struct Part {
@@ -243,7 +246,8 @@ class Splitter {
             const auto [a, b] = edge;
             if (std::abs(uses.net) == 1) {
                 seam_.push_back(uses.net > 0 ? Seam{a, b, uses.plus} : Seam{b, a, uses.plus});
-            } else if (uses.net == 0 && uses.plus >= 0 && path_.covers(0.5 * (flat(a) + flat(b)))) {
+            } else if (uses.net == 0 && uses.plus >= 0 &&
+                       path_.covers(path_.middle(flat(a), flat(b)))) {
                 wall_.push_back(edge);
             }
         }
@@ -286,6 +290,9 @@ class Splitter {
     bool cap(const std::vector<int>& seams, bool is_tangled = false) {
         Section section;
         section.spacing = spacing_;
+        if (path_.radius > 0) {
+            section.radius = std::max(path_.radius, kSides * spacing_ / (2 * kPi));
+        }
         std::vector<int> raw;
         add_segments(seams, section, raw);
         if (is_tangled) {
@@ -294,8 +301,9 @@ class Splitter {
             section = std::move(*without);
         }
         for (const auto& [a, b] : path_.outline) {
-            const int steps =
-                std::clamp(static_cast<int>((b - a).norm() / (0.5 * spacing_)), 1, 999);
+            const double length =
+                path_.radius > 0 ? (path_.world(b) - path_.world(a)).norm() : (b - a).norm();
+            const int steps = std::clamp(static_cast<int>(length / (0.5 * spacing_)), 1, 999);
             for (int n = 0; n < steps; ++n) section.wish.push_back(a + (b - a) * n / steps);
         }
         std::vector<int> edges = seams;
@@ -318,7 +326,7 @@ class Splitter {
         point.insert(point.end(), filled->added.begin(), filled->added.end());
         raw.resize(point.size(), -1);
         for (const Corners& t : filled->triangle) {
-            const Vec2 middle = point[t[0]] / 3 + point[t[1]] / 3 + point[t[2]] / 3;
+            const Vec2 middle = path_.middle(point[t[0]], point[t[1]], point[t[2]]);
             if (!path_.covers(middle)) continue;
             Corners cap;
             for (int k = 0; k < 3; ++k) {
@@ -380,7 +388,7 @@ class Splitter {
             kept.erase(edge);
         };
         const auto half_way = [&](const Ends& edge) {
-            return add_cap_point(0.5 * (flat(edge.first) + flat(edge.second)));
+            return add_cap_point(path_.middle(flat(edge.first), flat(edge.second)));
         };
         part_caps(cap_, is_seam, leave, half_way);
     }

@@ -114,12 +114,14 @@ inline std::vector<TriMesh> parts_of(const TriMesh& mesh) {
 }
 
 struct Fixture {
-    Aggregate matter = test::make_block(20, 6, 6, 0.05, Material{});  // 1 x 0.3 x 0.3
+    Aggregate matter;
     TriMesh mesh;
     Mount mount;
     std::vector<Vec3> position;
 
-    explicit Fixture(TriMesh made) : mesh(std::move(made)) {
+    // 0.3 x 0.3 across.
+    explicit Fixture(TriMesh made, int cells_along = 20)
+        : matter(test::make_block(cells_along, 6, 6, 0.05, Material{})), mesh(std::move(made)) {
         dress(mesh);
         mount = mount_mesh(mesh.position, matter, SkinKind::mount);
         follow();

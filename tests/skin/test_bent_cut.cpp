@@ -331,3 +331,33 @@ TEST_CASE("where an edge that goes all around stops inside, the plug stays joine
     CHECK(cap_triangles(f.mesh) > 0);
     CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
 }
+
+TEST_CASE("a plug's wall has triangles as its area has, however long it is") {
+    const int cells = GENERATE(20, 60);
+    const double half = 0.025 * cells;
+    INFO(cells);
+    Fixture f(box_mesh({half, .15, .15}, {cells, 9, 9}, false), cells);
+    const double whole = signed_volume(f.mesh);
+    RoundPath path{Vec3(0, 0, 0), Vec3(1, 0, 0)};
+    path.from = -half - 0.06, path.to = half + 0.06;
+    const CutResult result = f.cut(path.sweep());
+    CHECK(result.open_parts == 0);
+    check_sound(f.mesh, f.position);
+    const std::vector<TriMesh> parts = parts_of(f.mesh);
+    REQUIRE(parts.size() == 2);
+    const double one = signed_volume(parts[0]), other = signed_volume(parts[1]);
+    CHECK(one + other == Approx(whole).epsilon(1e-9));
+    CHECK(std::min(one, other) == Approx(path.area() * 2 * half).epsilon(3e-3));
+    // On both sides, of edges of half a cell.
+    const double a = 0.5 * f.matter.lattice.spacing;
+    const double even = 2 * 2 * kPi * path.radius * 2 * half / (std::sqrt(3) / 4 * a * a);
+    CHECK(cap_triangles(f.mesh) < 3 * even);
+    double longest = 0;
+    for (std::size_t t = 0; t < f.mesh.triangle.size(); ++t) {
+        for (int k = 0; k < 3 && is_cap(f.mesh, t); ++k) {
+            const Corners& c = f.mesh.triangle[t];
+            longest = std::max(longest, (f.position[c[k]] - f.position[c[(k + 1) % 3]]).norm());
+        }
+    }
+    CHECK(longest < 2 * a);
+}
