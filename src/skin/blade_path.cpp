@@ -21,6 +21,7 @@ constexpr double kLeast = 0.1736;  // the cosine of 80 degrees
 // Of the angle between two that lean by as much to opposite sides.
 constexpr double kMostTurned = 2 * kLeast * kLeast - 1;
 constexpr int kRounds = 200;
+constexpr double kRounding = 1e-12;  // of a place in its triangle, as a share of their size
 // Of plane and relief, how far off their triangles may be.
 constexpr double kLooser = 50;
 
@@ -306,7 +307,11 @@ Vec3 BladePath::rise(const Vec3& p) const {
 }
 
 bool BladePath::near(const Vec2& p, double reach) const {
-    if (relief && reach > 0) return relief->flat.distance({p[0], p[1], 0}) <= reach;
+    if (relief) {
+        const auto& [a, b, c] = triangle[relief->flat.nearest({p[0], p[1], 0}).triangle];
+        const double size = p.cwiseAbs().maxCoeff() + (b - a).norm() + (c - a).norm();
+        return relief->flat.distance({p[0], p[1], 0}) <= std::max(reach, kRounding * size);
+    }
     for (const auto& t : triangle) {
         const Vec2 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]);
         const Vec2 high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
