@@ -16,6 +16,7 @@ namespace {
 constexpr double kBeside = 1;  // cells
 constexpr std::size_t kMost = 3;
 constexpr double kAlong = 1e-3;  // of a normal that stands across a direction
+constexpr double kOn = 1e-3;     // cells, of a plane that goes through the face itself
 
 Vec3 in_doubles(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
@@ -98,7 +99,7 @@ std::optional<CutPlane> cut_before(const Aggregate& matter, const CutPlanes& cut
         const double along = plane.normal.dot(out.cast<double>());
         if (std::abs(along) < kAlong) continue;
         const double far = (plane.place - middle).dot(plane.normal) / along;
-        if (!(far > 0 && far < least)) continue;
+        if (!(far > -kOn && far < least)) continue;
         least = far;
         first = plane;
     }

@@ -97,7 +97,7 @@ class StageRun {
         if (context_.from != nullptr) {
             come_back(simulation, *context_.from);
         } else {
-            simulation.take_on(std::exchange(context_.contacts, {}));
+            simulation.take_on(std::exchange(context_.contacts, {}), could_not_touch_itself());
         }
         work_frames(simulation);
         if (!outcome_.stopped && !outcome_.interrupted) context_.contacts = simulation.hand_on();
@@ -108,6 +108,15 @@ class StageRun {
     }
 
   private:
+    // Whether the bodies come from equilibria in which their parts went through each other.
+    bool could_not_touch_itself() const {
+        const std::vector<StageSpec>& all = context_.scene.stage;
+        const auto here = std::find_if(all.begin(), all.end(),
+                                       [&](const StageSpec& one) { return &one == &stage_; });
+        if (here == all.begin() || here == all.end()) return false;
+        const SimSettings& before = std::prev(here)->sim;
+        return !in_motion(before.solver) && !before.self_contact;
+    }
     void tell_machine() const {
         const auto tell = [&](const std::string& text) { log_info("{}: {}", stage_.name, text); };
         const std::string axes = axes_text(machine_.frame);

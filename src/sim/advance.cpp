@@ -468,11 +468,12 @@ std::string Simulation::hand_on() const {
     return out.bytes();
 }
 
-void Simulation::take_on(std::string_view contacts) {
+void Simulation::take_on(std::string_view contacts, bool unpressed) {
     BodyContact* const contact = rooms_->contact();
-    if (contact == nullptr || !contact->acts() || contacts.empty()) return;
+    if (contact == nullptr || !contact->acts()) return;
+    if (unpressed) contact->begin_unpressed();
     ByteReader in(contacts);
-    contact->take_on(in);
+    if (!contacts.empty()) contact->take_on(in);
 }
 
 void Simulation::save(ByteWriter& out) const { out(*rooms_); }

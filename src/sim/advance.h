@@ -108,8 +108,10 @@ class Simulation {
     // What touches as a stage of motion ends goes on as it was where another begins, of the same
     // bodies as they are: what contacts of bodies with each other and with themselves remember.
     // Nothing, and contacts begin, where either stage is none of motion. Throws as load().
+    // `unpressed`: parts of a body that lie in each other have not been pressed, for until now they
+    // could not touch: as deep as they are they push nothing, and less where they come out.
     std::string hand_on() const;
-    void take_on(std::string_view contacts);
+    void take_on(std::string_view contacts, bool unpressed = false);
 
     // All that its moves have changed, but for the bodies. What was saved of a simulation goes on
     // in another that began as it did, once the bodies are those of then: by the same bits. Throws

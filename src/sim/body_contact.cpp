@@ -328,6 +328,12 @@ void BodyContact::renew(const std::vector<char>& bodies_asleep) {
     }
 }
 
+void BodyContact::begin_unpressed() {
+    for (std::size_t w = 0; w < way_.size(); ++w) {
+        if (body_of(pair_[w].from) == body_of(pair_[w].onto)) way_[w].come_late();
+    }
+}
+
 void BodyContact::renew_all(const std::vector<char>& bodies_asleep) {
     if (!acts()) return;
     follow();

@@ -79,6 +79,7 @@ class BodyContact {
     // are new begin.
     void hand_on(ByteWriter& out);
     void take_on(ByteReader& in);
+    void begin_unpressed();  // as Simulation::take_on()
 
     // For equilibria, of one body: see sim/contact_way.h; adds to each particle what its contacts
     // can add to its stiffness [N/m]; what pressed when forces were last found.
