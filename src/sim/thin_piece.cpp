@@ -53,7 +53,7 @@ std::unique_ptr<ThinPiece> ThinPiece::find(const Aggregate& of, const RestSurfac
     }
     std::sort(piece->by_site_.begin(), piece->by_site_.end());
     for (piece->axis_ = 2; piece->axis_ >= 0 && !piece->find_layer();) --piece->axis_;
-    piece->make_cells();
+    if (!piece->make_cells(molded)) return nullptr;
     for (std::size_t c = 0; c < piece->matter_.particle_count(); ++c) {
         if (!piece->add_corner(c)) return nullptr;
     }
@@ -109,23 +109,37 @@ bool ThinPiece::find_layer() {
     return true;
 }
 
-// Of a layer as far as there are cells to either side; else about each particle, in their order.
-void ThinPiece::make_cells() {
+// Whether there is matter in the cell here, as molded, or its surface goes through it.
+bool ThinPiece::may_hold_matter(const Vec3i& site, const RestSurface& molded) const {
+    constexpr double kFromMiddle = 0.4331;  // of an eighth of the cell to its corners, sqrt(3) / 4
+    const Vec3 to_low = axis_ < 0 ? Vec3(Vec3::Ones()) : Vec3(Vec3::Unit(axis_));
+    for (int c = 0; c < 8; ++c) {
+        const Vec3 middle = site.cast<double>() - 0.5 * to_low + Vec3::Constant(0.25) +
+                            0.5 * corner_step(c).cast<double>();
+        const Vec3i there = middle.array().floor().cast<int>();
+        const CellId cell = of_->lattice.cell_at(there);
+        if (cell < 0) continue;
+        if (!molded.is_rim(cell)) return true;
+        if (molded.at(cell, middle - there.cast<double>()).distance < kFromMiddle) return true;
+    }
+    return false;
+}
+
+// Those between the particles of a layer, else those about each particle, in their order: where
+// there is matter, for of a cell outside of it nobody would know. False where there is none.
+bool ThinPiece::make_cells(const RestSurface& molded) {
     const double a = of_->lattice.spacing;
     Vec3 origin = of_->lattice.origin - Vec3::Constant(0.5 * a);
     Vec3i count = of_->lattice.cell_count + Vec3i::Ones();
     std::vector<Vec3i> cells;
+    std::vector<double> mass;
     for (std::size_t n = 0; n < particle_.size(); ++n) {
         const Vec3i site = site_of(n);
-        bool is_cell = axis_ < 0;
-        if (axis_ >= 0) {
-            for (int below = 0; below < 2; ++below) {
-                const CellId cell = of_->lattice.cell_at(site - below * Vec3i::Unit(axis_));
-                is_cell = is_cell || cell >= 0;
-            }
-        }
-        if (is_cell) cells.push_back(site);
+        if (!may_hold_matter(site, molded)) continue;
+        cells.push_back(site);
+        mass.push_back(of_->particle_mass[std::size_t(particle_[n])]);
     }
+    if (cells.empty()) return false;
     if (axis_ >= 0) {
         origin = of_->lattice.origin - 0.5 * a * Vec3::Unit(axis_);
         count = of_->lattice.cell_count + Vec3i::Unit(axis_);
@@ -146,7 +160,7 @@ void ThinPiece::make_cells() {
     m.cell_centroid = SparseArray<Eigen::Vector3f>(cells.size(), Eigen::Vector3f::Zero());
     for (std::size_t n = 0; n < cells.size() && axis_ < 0; ++n) {
         for (ParticleId c : m.lattice.cell_corners(static_cast<CellId>(n))) {
-            m.particle_mass[std::size_t(c)] += of_->particle_mass[std::size_t(particle_[n])] / 8;
+            m.particle_mass[std::size_t(c)] += mass[n] / 8;
         }
     }
     for (std::size_t n = 0; n < cells.size() && !m.inset.empty(); ++n) {
@@ -159,6 +173,7 @@ void ThinPiece::make_cells() {
     }
     for (Vec3Array* all : {&force_, &before_}) all->resize(corners);
     done_.resize(particle_.size());
+    return true;
 }
 
 // On each axis.
@@ -281,6 +296,7 @@ void ThinPiece::add_molded(const ThinEnds& ends, const std::vector<int>& points)
                 const Vec3i flat = Vec3i::Ones() - Vec3i::Unit(axis_);
                 cell -= Vec3i(corner_step(c)).cwiseProduct(flat);
             }
+            if (matter_.lattice.cell_at(cell) < 0) continue;
             add_point(cell, lattice.origin + lattice.spacing * place, left * of_->surface.area(p),
                       normal);
             break;

@@ -80,7 +80,8 @@ class ThinPiece {
     int number_of(ParticleId particle) const;
     Vec3i site_of(std::size_t number) const;
     bool find_layer();
-    void make_cells();
+    bool may_hold_matter(const Vec3i& site, const RestSurface& molded) const;
+    bool make_cells(const RestSurface& molded);
     std::vector<int> numbers_within(double reach, const Vec3& place) const;
     bool add_corner(std::size_t corner);
     bool add_corner(const Vec3& place, double reach, ParticleId own);
