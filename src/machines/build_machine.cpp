@@ -80,7 +80,7 @@ Vec3 length3(const Setting& setting, const Expression3& text) {
 MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
     auto mesh = std::make_shared<TriMesh>();
     try {
-        *mesh = read_mesh(tool.mesh);
+        *mesh = read_mesh(tool.mesh, {}, nullptr, kCreaseAngle, false);  // it looks as its tool
     } catch (const Error& error) {
         throw PlacedError(tool.mesh_place, error.what(), error.code());
     }
