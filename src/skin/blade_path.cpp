@@ -201,8 +201,10 @@ std::optional<BladePath> round_axis(const Sweep& sweep, const Vec3& point, const
 bool lay_relief(const Sweep& sweep, double tolerance, BladePath& path) {
     TriMesh flat;
     std::vector<std::array<double, 3>> height;
+    Sweep swept;
     for (const auto& t : sweep) {
         if (area_of(t).norm() == 0) continue;
+        swept.push_back(t);
         std::array<double, 3>& own = height.emplace_back();
         for (int k = 0; k < 3; ++k) {
             own[k] = path.height(t[k]);
@@ -213,7 +215,8 @@ bool lay_relief(const Sweep& sweep, double tolerance, BladePath& path) {
         flat.triangle.push_back({first, first + 1, first + 2});
     }
     if (lie_over_each_other(path.triangle, height, tolerance)) return false;
-    path.relief = std::make_shared<const Relief>(Relief{TriangleTree(flat), std::move(height)});
+    path.relief = std::make_shared<const Relief>(
+        Relief{TriangleTree(flat), std::move(height), std::move(swept), path.point});
     return true;
 }
 
@@ -297,6 +300,15 @@ Vec2 BladePath::middle(const Vec2& a, const Vec2& b, const Vec2& c) const {
     if (first == 0) return a / 3 + b / 3 + c / 3;
     return (a.norm() + b.norm() + c.norm()) / 3 *
            (a.normalized() + b.normalized() + c.normalized()).normalized();
+}
+
+int BladePath::side(const Vec3& p) const {
+    if (first == 0) return height(p) >= 0 ? 1 : -1;
+    const Vec2 at = flat(p);
+    const auto& t = relief->swept[relief->flat.nearest({at[0], at[1], 0}).triangle];
+    const Vec3 area = area_of(t);
+    const double out = area.dot(p - (point - relief->point) - t[0]);
+    return (area.dot(rise(p)) < 0 ? -out : out) >= 0 ? 1 : -1;
 }
 
 Vec3 BladePath::rise(const Vec3& p) const {

@@ -19,6 +19,8 @@ namespace swage {
 struct Relief {
     TriangleTree flat;                          // the triangles, as (across, up, 0)
     std::vector<std::array<double, 3>> height;  // of their corners [m]
+    std::vector<std::array<Vec3, 3>> swept;     // as they lie in the world
+    Vec3 point;                                 // the path's then
 
     double at(const Vec2& p) const;
 };
@@ -45,6 +47,9 @@ struct BladePath {
     Vec2 middle(const Vec2& a, const Vec2& b) const;
     Vec2 middle(const Vec2& a, const Vec2& b, const Vec2& c) const;
     Vec3 rise(const Vec3& p) const;  // unit: where height() grows
+    // 1 or -1: on which side of the triangles themselves. Round an axis height() is bent between
+    // their corners: what is severed, which goes by them, may lie on the other side of that.
+    int side(const Vec3& p) const;
     bool covers(const Vec2& p) const { return near(p, 0); }
     bool near(const Vec2& p, double reach) const;  // within `reach` [m] of the swept part
 };

@@ -368,7 +368,7 @@ class PathCut {
         CornerMask mask = 0;
         for (int c = 0; c < 8; ++c) {
             const Vec3 at = matter_.particle_position.at(corner[c]);
-            mask |= static_cast<CornerMask>((path.height(at) >= 0 ? 1 : -1) == own) << c;
+            mask |= static_cast<CornerMask>(path.side(at) == own) << c;
         }
         return mask;
     }
