@@ -10,6 +10,7 @@
 #include <atomic>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 namespace fs = std::filesystem;
 
@@ -76,7 +77,10 @@ std::map<std::string, double> last_row(const fs::path& csv) {
     std::map<std::string, double> row;
     for (std::string name, cell;
          std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
-        if (!cell.empty()) row[name] = std::stod(cell);
+        if (cell.empty()) continue;
+        if (!row.emplace(name, std::stod(cell)).second) {
+            throw std::runtime_error("two columns are called " + name);
+        }
     }
     return row;
 }

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 
@@ -162,20 +161,6 @@ TEST_CASE(
 }
 
 namespace {
-
-// By the names of its columns.
-std::map<std::string, double> last_row(const fs::path& table) {
-    std::istringstream lines(bytes_of(table));
-    std::string names, line, last;
-    std::getline(lines, names);
-    while (std::getline(lines, line)) last = line;
-    std::istringstream name(names), cell(last);
-    std::map<std::string, double> row;
-    for (std::string key, value; std::getline(name, key, ',') && std::getline(cell, value, ',');) {
-        CHECK(row.emplace(key, std::atof(value.c_str())).second);
-    }
-    return row;
-}
 
 // From the probe "tip" of a row to the nearest vertex of an OBJ.
 double tip_off_mesh(std::map<std::string, double> row, const fs::path& file) {
