@@ -22,6 +22,7 @@ struct CutPlane {
 
     // How far a place lies along the normal.
     double height(const Vec3& of) const;
+    Vec3 slope(const Vec3& at) const { return normal - bend * (at - place); }  // of height()
     // How far it is to what lies of the path within a cell of `place`, as a blade's path ends.
     double distance(const Vec3& from) const;
 };

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3431'7063'6177'7300;  // "\0swacp14" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3531'7063'6177'7300;  // "\0swacp15" on a little-endian machine
 
 template <typename Io>
 void visit_json(Io& io, Json& json) {

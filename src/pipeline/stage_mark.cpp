@@ -8,7 +8,7 @@ namespace swage {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3130'6d61'6177'7300;  // "\0swam01" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3230'6d61'6177'7300;  // "\0swam02" on a little-endian machine
 
 // Of the run up to the end of the stage.
 const std::string& key_of(const StageKeys& keys, int stages) {

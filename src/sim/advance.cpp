@@ -22,6 +22,7 @@
 #include "sim/move_warnings.h"
 #include "sim/quasistatic.h"
 #include "sim/sever.h"
+#include "sim/weigh_pieces.h"
 
 namespace swage {
 
@@ -224,10 +225,15 @@ Simulation::Rooms::Cut Simulation::Rooms::cut(std::size_t b, const Drive& from, 
     if (events.empty()) return cut;
     const double before = elastic(b);
     sever(*at.matter, events);
+    const std::vector<double> mass = at.matter->particle_mass;
+    const double slowed = weigh_pieces(*at.matter, events);
+    if (at.matter->particle_mass != mass) {
+        std::visit([&](auto& any) { any.masses_changed(b, mass); }, solver);
+    }
     keep_sides(*at.matter, at.sides);
     for (const SeverEvent& e : events) ++severed[static_cast<std::size_t>(e.blade)];
     const double let_go = connections_changed(b, from);
-    at.books.severed_energy += before - elastic(b) + let_go;
+    at.books.severed_energy += before - elastic(b) + let_go + slowed;
     cut.severed = static_cast<int>(events.size());
     return cut;
 }
@@ -259,8 +265,7 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
             const bool gravity = n == apparatus.load.size();
             (gravity ? books.gravity_work : books.load_work) += part.load_work[n];
         }
-        // Half of what a contact holds and takes is on its books; the rest of its work is passed
-        // on.
+        // Half of what a contact holds and takes is on its books; what else it works is passed on.
         books.passed += part.by_contact.work + part.by_contact.damped + part.by_contact.friction +
                         part.by_contact.stored - part.by_contact.stored_at_start;
         books.kinetic = part.after.kinetic;
@@ -360,13 +365,8 @@ FrameReport Simulation::start() const {
     FrameReport report;
     report.pieces = 0;
     for (std::size_t b = 0; b < rooms_->body.size(); ++b) {
-        const Aggregate& matter = *rooms_->body[b].matter;
-        Books books;
-        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
-            books.kinetic +=
-                0.5 * matter.particle_mass[p] * matter.particle_velocity.at(p).squaredNorm();
-        }
-        books.elastic = rooms_->elastic(b);
+        Books books{.kinetic = kinetic_energy(*rooms_->body[b].matter),
+                    .elastic = rooms_->elastic(b)};
         books.kinetic_at_start = books.kinetic;
         books.elastic_at_start = books.elastic;
         report.pieces += rooms_->body[b].pieces;

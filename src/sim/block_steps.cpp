@@ -57,11 +57,20 @@ BlockSolver::BlockSolver(const std::vector<Aggregate*>& bodies, const Apparatus&
       step_(std::numeric_limits<double>::infinity()),
       implicit_(bodies.size()) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-        step_ =
-            std::min(step_, settings.solver == Solver::euler ? euler_step(*bodies[b], bodies_[b])
-                                                             : bodies_[b].stable_step());
+        step_ = std::min(step_, step_of(b));
     }
     if (settings.solver != Solver::implicit_steps) bodies_.limit_stiffness(step_);
+}
+
+double BlockSolver::step_of(std::size_t body) const {
+    const MovingBody& of = bodies_[body];
+    return settings_.solver == Solver::euler ? euler_step(of.matter(), of) : of.stable_step();
+}
+
+void BlockSolver::masses_changed(std::size_t body, const std::vector<double>& was) {
+    const double before = bodies_[body].stable_step();
+    bodies_.masses_changed(body, was);
+    if (bodies_[body].stable_step() < before) step_ = std::min(step_, step_of(body));
 }
 
 double BlockSolver::connections_changed(std::size_t body, const Drive& now) {

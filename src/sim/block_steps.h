@@ -48,6 +48,7 @@ class BlockSolver {
     MoveOutcome advance(const Drive& from, const Drive& to);
     // A blade has severed connections of this body. Returns what contacts with tools and grips held
     // by what is gone [J]; with other bodies that counts as damped in the next move.
+    void masses_changed(std::size_t body, const std::vector<double>& was);  // as MovingBody's
     double connections_changed(std::size_t body, const Drive& now);
     double elastic_energy(std::size_t body) { return bodies_[body].elastic_energy(); }  // [J]
     const LoadSet& pushes(std::size_t body) const { return bodies_[body].pushes(); }
@@ -56,7 +57,8 @@ class BlockSolver {
 
     template <typename Io>
     void visit(Io& io) {  // what steps change
-        io(bodies_, energy_, started_, share_, good_blocks_, halvings_, steps_, rescued_blocks_);
+        io(bodies_, step_, energy_, started_, share_, good_blocks_, halvings_, steps_,
+           rescued_blocks_);
         for (std::size_t b = 0; b < implicit_.size(); ++b) implicit_[b].visit(io, bodies_[b]);
     }
 
@@ -93,6 +95,7 @@ class BlockSolver {
     std::string take_back(const Block& block, const Finding& found,
                           const std::vector<BodyOutcome>& so_far, MoveOutcome& outcome);
     bool can_be_rescued() const;
+    double step_of(std::size_t body) const;  // that it alone would allow at first [s]
 
     const Apparatus& apparatus_;
     SimSettings settings_;

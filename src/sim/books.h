@@ -10,7 +10,7 @@ namespace swage {
 struct Books {
     using IsPlain = Books;
 
-    // Now, and when the stage began [J]; elastic energy that a blade took at once was in it too.
+    // Now, and when the stage began [J]; energy that a blade took at once was in it too.
     double kinetic = 0, kinetic_at_start = 0;
     double elastic = 0, elastic_at_start = 0;
     double contact = 0, contact_at_start = 0;  // in contacts and grips
@@ -20,8 +20,9 @@ struct Books {
     double passed = 0;  // to it by bodies that it touches, likewise; nothing in the sum of all
     double plastic = 0, damped = 0;  // taken since the stage began [J]
     double friction = 0, drag = 0;   // likewise; drag of the medium
-    double severed_energy = 0;       // elastic energy lost with severed connections, likewise [J]
-    double fracture = 0;             // energy that breaking took, likewise [J]
+    double severed_energy = 0;  // lost with severed connections, and where what lay on one side of
+                                // a blade comes to move with the other, likewise [J]
+    double fracture = 0;        // energy that breaking took, likewise [J]
     // While the drive stood, likewise [J]: what an equilibrium has less than the one before when
     // cracks have run on, a blade has cut or what held it is gone. Quasi-static only.
     double set_free = 0;

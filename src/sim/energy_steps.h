@@ -63,6 +63,9 @@ class EnergySteps {
     // Given up where no step is short enough: a single group has then got to where its steps were
     // last right, several are all back at `from`.
     MoveOutcome advance(const Drive& from, const Drive& to);
+    void masses_changed(std::size_t body, const std::vector<double>& was) {  // as MovingBody's
+        mover_[body].body.masses_changed(was);
+    }
     double connections_changed(std::size_t body, const Drive& now);  // as BlockSolver's
     double elastic_energy(std::size_t body) { return mover_[body].body.elastic_energy(); }
     const LoadSet& pushes(std::size_t body) const { return mover_[body].body.pushes(); }

@@ -109,6 +109,10 @@ SwingBound::SwingBound(const Aggregate& matter, bool parts)
     molded_.assign(bound.begin(), bound.end());
 }
 
+void SwingBound::masses_changed(const Aggregate& matter) {
+    found_ = std::max(found_, most_per_mass(stiffness_bound(matter), matter));
+}
+
 double SwingBound::squared(const Aggregate& matter, const LatticeForces& lattice) const {
     const std::vector<double> bound = lattice.stiffness_bound(matter);
     double stiffer = 1;

@@ -28,6 +28,14 @@ class SwingBound {
     // less.
     double squared(const Aggregate& matter, const LatticeForces& lattice) const;
 
+    // A blade has parted it, and some of its particles are lighter than they were.
+    void masses_changed(const Aggregate& matter);
+
+    template <typename Io>
+    void visit(Io& io) {
+        io(found_);
+    }
+
   private:
     double found_;
     std::vector<float> molded_;  // stiffness bound of each particle [N/m]; empty: nothing flows

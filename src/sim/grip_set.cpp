@@ -2,6 +2,7 @@
 #include "sim/grip_set.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sim/surface_forces.h"
 #include "sim/torn_forces.h"
@@ -54,9 +55,10 @@ void GripSet::carry_points(const Aggregate& matter, const Carriage& carriage) {
             }
         }
     });
-    const bool is_held_otherwise = beside_ != nullptr || beside != nullptr;
+    const bool limits_change =
+        beside_ != nullptr || beside != nullptr || std::exchange(limit_is_old_, false);
     beside_ = std::move(beside);
-    if (is_held_otherwise && !limit_.empty()) find_limits(matter);
+    if (limits_change && !limit_.empty()) find_limits(matter);
 }
 
 double GripSet::stiffness(const Aggregate& matter, int point) const {

@@ -32,6 +32,7 @@ class GripSet {
 
     // A blade or a crack has parted cells: points that it has torn are held by others or no more.
     void connections_changed(const Aggregate& matter);
+    void masses_changed() { limit_is_old_ = true; }  // as MovingContacts has it
 
     // Explicit steps of this length [s] must stay stable, so there is a stiffness that no point
     // exceeds (stiffest_of_points()).
@@ -108,6 +109,7 @@ class GripSet {
     // By point of the surface; empty: none.
     std::vector<double> limit_;  // [N/m]
     double limit_step_ = 0;      // [s]
+    bool limit_is_old_ = false;  // until connections_changed()
     std::vector<char> torn_;     // and let go
     // The body's, with those that other cells hold than as molded; null: none.
     std::shared_ptr<const SurfacePoints> beside_;

@@ -204,6 +204,22 @@ void LoadSet::leave_alone(const Aggregate& matter, const std::vector<ParticleId>
     last_.mass_moment = mass_moment(heavy_mass_, matter.particle_position);
 }
 
+void LoadSet::masses_changed(const Aggregate& matter, const std::vector<double>& was) {
+    if (!has_gravity()) return;
+    const auto heavy = [&](std::vector<double> mass) {
+        for (ParticleId p : left_alone_) mass[std::size_t(p)] = 0;
+        return mass;
+    };
+    const std::vector<double> before = heavy(was), now = heavy(matter.particle_mass);
+    const Vec3 had = mass_moment(before, matter.particle_position);
+    if (started_) last_.mass_moment += mass_moment(now, matter.particle_position) - had;
+    std::vector<Centre> centre = centres(matter);
+    const double mass = std::accumulate(before.begin(), before.end(), 0.0);
+    if (mass > 0) centre.back().place = had / mass;
+    if (!left_alone_.empty()) heavy_mass_ = now;
+    keep_centres(centre, matter);
+}
+
 std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter) const {
     std::vector<double> area;
     area.reserve(load.point.size());

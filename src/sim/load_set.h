@@ -61,6 +61,8 @@ class LoadSet {
 
     // A blade or a crack has changed which cells are whole.
     void connections_changed(const Aggregate& matter);
+    // The particles had these masses [kg] before a blade cut: no work is done by that.
+    void masses_changed(const Aggregate& matter, const std::vector<double>& was);
 
     // The stage begins here; only the first call counts.
     void start(const Aggregate& matter, const Drive& now);

@@ -51,8 +51,11 @@ class MovingBodies {
         parallel_for(awake.size(), particles / kThreadShare, [&](std::size_t n) { act(awake[n]); });
     }
 
-    void limit_stiffness(double step);                               // of contacts, as MovingBody's
-    double connections_changed(std::size_t body, const Drive& now);  // as MovingBody's
+    void limit_stiffness(double step);  // of contacts, as MovingBody's
+    void masses_changed(std::size_t body, const std::vector<double>& was) {  // as MovingBody's
+        body_[body].masses_changed(was);
+    }
+    double connections_changed(std::size_t body, const Drive& now);  // likewise
 
     // A leg begins, and the speeds go on by a step of this length [s].
     void start(const Drive& from, double step, MoveOutcome& outcome);

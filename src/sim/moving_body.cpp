@@ -157,6 +157,14 @@ double MovingBody::surface_changed(const Drive& now) {
     return held;
 }
 
+void MovingBody::masses_changed(const std::vector<double>& was) {
+    pushes_.masses_changed(matter_, was);
+    contacts_.masses_changed();
+    swings_.masses_changed(matter_);
+    step_ = std::min(step_, swage::stable_step(matter_, safety_, lattice_, swings_, damping_));
+    flowed_ = true;  // the present one is to be found anew
+}
+
 void MovingBody::renew_candidates(const Drive& before, const Drive& now, double way) {
     if (!touches_) return;
     const double far = 0.45 * matter_.lattice.spacing;

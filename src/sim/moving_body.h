@@ -108,7 +108,9 @@ class MovingBody {
         return force_.at(p) / matter_.particle_mass[p] + gravity_;
     }
 
-    // A blade has severed connections. Returns what contacts with tools and grips held by what is
+    // A blade comes to sever connections, beside which the particles had these masses [kg].
+    void masses_changed(const std::vector<double>& was);
+    // It has severed them. Returns what contacts with tools and grips held by what is
     // gone [J].
     double connections_changed(const Drive& now) {
         lattice_.connections_changed(matter_, true);
@@ -153,8 +155,8 @@ class MovingBody {
         lattice_.visit(io, matter_);
         io(damping_);
         contacts_.visit(io, matter_);
-        io(pushes_, present_step_, flowed_, drag_, force_, load_, turned_, gone_, implicit_,
-           branch_energy_, block_energy_, gravity_, inside_out_, loss_to_book_);
+        io(pushes_, swings_, step_, present_step_, flowed_, drag_, force_, load_, turned_, gone_,
+           implicit_, branch_energy_, block_energy_, gravity_, inside_out_, loss_to_book_);
     }
 
   private:

@@ -34,6 +34,8 @@ class MovingContacts {
 
     // As of sim/tool_pairs.h. Returns what springs held by which nothing is held any more [J].
     double connections_changed(const Aggregate& matter, const Drive& now);
+    // How stiff points may be is found anew by the connections_changed() that follows.
+    void masses_changed() { rest_.masses_changed(); }
     void find_candidates(const Aggregate& matter, const Drive& now);
 
     // An implicit step begins from this drive; it is kept, and explicit ones may follow. Returns as

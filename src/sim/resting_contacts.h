@@ -27,6 +27,10 @@ class RestingContacts {
 
     // As of sim/tool_pairs.h.
     void connections_changed(const Aggregate& matter);
+    void masses_changed() {  // as MovingContacts has it
+        pairs_.masses_changed();
+        grips_.masses_changed();
+    }
     void begin_move(const Aggregate& matter, const Drive& from) { pairs_.begin_move(matter, from); }
     void find_candidates(const Aggregate& matter, const Drive& now) {
         pairs_.find_candidates(matter, now);

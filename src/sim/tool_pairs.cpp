@@ -79,7 +79,11 @@ void ToolPairs::connections_changed(const Aggregate& matter) {
     const auto moved = touch_->connections_changed(matter);
     touch_->leave_out(left_out_);
     for (Pair& pair : pair_) pair.gone = pair.gone || !touch_->meets(pair.point);
-    if (touch_->size() == before && moved.empty()) return;
+    const bool limit_is_old = std::exchange(limit_is_old_, false);
+    if (touch_->size() == before && moved.empty()) {
+        if (limit_is_old && !stiffness_limit_.empty()) find_limits(matter);
+        return;
+    }
     layer_ = {matter, points(), settings_.solver};
     if (!stiffness_limit_.empty()) find_limits(matter);
     for (const auto& [point, was] : moved) {

@@ -45,11 +45,13 @@ class ToolPairs {
     // tool without having gone there is only kept from going deeper. Candidates are to be found
     // anew.
     void connections_changed(const Aggregate& matter);
+    void masses_changed() { limit_is_old_ = true; }  // as MovingContacts has it
 
     // From here on these particles touch nothing by themselves, others do; candidates likewise.
     void leave_out(std::vector<ParticleId> particles);
 
-    // All of the surface is new, and of a tool it finds itself inside as connections_changed() says.
+    // All of the surface is new, and of a tool it finds itself inside as connections_changed()
+    // says.
     void begin_as_new() { is_new_ = true; }
 
     // A move of the drive begins; points touched anew stick where they are now.
@@ -131,6 +133,7 @@ class ToolPairs {
     SurfaceLayer layer_;                   // under those points
     std::vector<double> stiffness_limit_;  // of each [N/m]; empty: none
     double limit_step_ = 0;                // [s]
+    bool limit_is_old_ = false;            // until connections_changed()
     std::vector<Pair> pair_;
     std::vector<double> clearance_;     // by pair: it cannot touch while particles move by less
     std::vector<Vec3> start_position_;  // of every surface point when the move began

@@ -267,7 +267,7 @@ TEST_CASE("of what is elastic and does not rest check tells the steps of motion 
     const Scratch scratch;
     const fs::path scene = scratch.path() / "scene.toml", out = scratch.path() / "run";
     swage::write_obj(scratch.path() / "bar.obj", swage::box_mesh({0, 0, 0}, {0.1, 0.02, 0.02}));
-    const auto steps = [&](const std::string& stage) {
+    const auto steps = [&](const std::string& stage, double lighter = 1) {
         put_text(scene,
                  "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\n"
                  "across = 2\n[[stage]]\nsolver = \"explicit\"\nsleep = false\n" +
@@ -277,8 +277,10 @@ TEST_CASE("of what is elastic and does not rest check tells the steps of motion 
             {"run", scene.string(), "--no-render", "--json", "--fresh", "--out", out.string()});
         INFO(stage << run.err << cost);
         const double taken = parse_json(run.out).at("stages").at(0).at("steps").get<double>();
-        CHECK(cost.at("steps_least").get<double>() == taken);
-        CHECK(cost.at("steps_most").get<double>() == taken);
+        const double least = cost.at("steps_least").get<double>();
+        CHECK(least <= taken);
+        CHECK(taken <= lighter * least);
+        CHECK(cost.at("steps_most").get<double>() == std::round(lighter * least));
         return taken;
     };
     // Of frames of a few steps and a bit more than one each takes one more.
@@ -291,9 +293,9 @@ TEST_CASE("of what is elastic and does not rest check tells the steps of motion 
         "[[stage.load]]\nforce = [0, \"1 N\", 0]\non = \"right\"\n"
         "strength = \"t > 0.37\"\n";
     CHECK(steps(hold + "2\n" + jumps) > steps(hold + "2\n"));
-    // What a blade may part takes the steps of its springs.
+    // What a blade may part takes the steps of its springs; what its pieces weigh is not known.
     const std::string cut = "machine = \"cut\"\nduration = \"10 ms\"\nframes = 3\n";
-    steps(cut);
+    steps(cut, 1.1);
     // Frames that end in a fall.
     steps(
         "machine = \"floor\"\ngravity = 9.81\nduration = \"110 ms\"\nframes = 7\n"
