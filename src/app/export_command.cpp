@@ -23,8 +23,8 @@ struct ExportArguments {
     bool no_tools = false, json = false;
 };
 
-UsdScene usd_scene_of(const Json& record, const ExportArguments& given) {
-    UsdScene scene;
+ExportScene export_scene_of(const Json& record, const ExportArguments& given) {
+    ExportScene scene;
     scene.render = render_settings_of(record);
     set_view(given.view, scene.render);
     set_frames(given.frames, scene.render);
@@ -37,7 +37,7 @@ UsdScene usd_scene_of(const Json& record, const ExportArguments& given) {
 
 int export_run(const ExportArguments& given) {
     const fs::path run = given.run;
-    UsdScene scene = usd_scene_of(record_of_run(run), given);
+    ExportScene scene = export_scene_of(record_of_run(run), given);
     scene.tools = !given.no_tools;
     const fs::path file = given.out.empty() ? RunDirectory::exported(run) / (scene.name + ".usda")
                                             : fs::path(given.out);
@@ -49,7 +49,7 @@ int export_run(const ExportArguments& given) {
     const FrameRange frames = wanted_frames(given.frames, scene.render, store.frame_count());
     const int first_frame = scene.render.first_frame;
     Stopwatch watch;
-    const UsdOutcome outcome = [&] {
+    const ExportOutcome outcome = [&] {
         const auto lap = watch.lap("export");
         return export_usd(store, scene, frames, file);
     }();

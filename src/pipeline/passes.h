@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "pipeline/frame_store.h"
+#include "pipeline/machine_tracks.h"
 #include "pipeline/piece_track.h"
 #include "pipeline/run_directory.h"
-#include "pipeline/usd_machine.h"
 #include "render/layers.h"
 
 namespace swage {
@@ -20,7 +20,7 @@ namespace swage {
 // What is in the pictures, as the user calls it.
 struct RunNames {
     std::vector<std::string> body;
-    std::vector<UsdStage> stage;
+    std::vector<StageFrames> stage;
     std::string scene = {};            // the file's
     std::vector<NamedPieces> piece{};  // after the last stage
 };

@@ -69,16 +69,13 @@ struct Track {
 
 class Exporter {
   public:
-    Exporter(const FrameStore& store, const UsdScene& scene, const FrameRange& frames)
-        : store_(store),
-          scene_(scene),
-          frames_(frames),
-          machines_(store, scene.shown(), frames, scene.stage) {
+    Exporter(const FrameStore& store, const ExportScene& scene, const FrameRange& frames)
+        : store_(store), scene_(scene), frames_(frames), machines_(store, scene.shown(), frames) {
         std::set<std::string> taken;
         root_ = usd_identifier(scene.name, taken);
     }
 
-    UsdOutcome write(const fs::path& file) {
+    ExportOutcome write(const fs::path& file) {
         look_at_all();
         int samples = 0;
         for (const Track& track : track_) {
@@ -101,21 +98,24 @@ class Exporter {
         write_turn(out);
         std::set<std::string> taken = {"camera", "key_lamp", "machine", "materials"};
         const std::string materials = "/" + root_ + "/materials";
-        if (looks_.count() > 0) {
+        if (!looks_.all().empty()) {
             out.open("def Scope \"materials\"");
-            looks_.write(out, materials, image);
+            write_usd_looks(out, looks_, materials, image);
             out.close();
+        }
+        for (const std::string& identifier : usd_identifiers(looks_)) {
+            look_.push_back(materials + "/" + identifier);
         }
         for (std::size_t b = 0; b < track_.size(); ++b) {
             track_[b].identifier = usd_identifier(track_[b].name, taken);
-            write_body(out, b, materials);
+            write_body(out, b);
         }
-        machines_.write(out, materials, looks_);
+        write_usd_machines(out, machines_, scene_.stage, look_);
         write_view(out);
         out.close();
         out.finish();
         beside.stay();
-        UsdOutcome outcome{track_.size(), machines_.count(), fs::file_size(file), expected, {}};
+        ExportOutcome outcome{track_.size(), machines_.count(), fs::file_size(file), expected, {}};
         for (const std::string& one : std::set(image.begin(), image.end())) {
             if (!one.empty()) outcome.image.push_back(one);
         }
@@ -153,8 +153,7 @@ class Exporter {
             }
         }
         for (std::size_t b = 0; b < track_.size(); ++b) {
-            track_[b].name =
-                b < scene_.body.size() ? scene_.body[b] : fmt::format("body-{}", b + 1);
+            track_[b].name = scene_.body_name(b);
         }
     }
     static bool is_new_skin(const std::vector<int>& skin) {
@@ -263,7 +262,7 @@ class Exporter {
                  "(0, 0, 0, 1) )\nuniform token[] xformOpOrder = [\"xformOp:transform\"]");
     }
 
-    void write_body(UsdText& out, std::size_t body, const std::string& materials) {
+    void write_body(UsdText& out, std::size_t body) {
         const Track& track = track_[body];
         out.open(
             usd_prim("Mesh", track.name, track.identifier, track.look.empty() ? "" : kUsdBinds));
@@ -284,7 +283,7 @@ class Exporter {
         if (track.has_uv) write_uv(out, body);
         write_fields(out, body);
         out.line("uniform token subdivisionScheme = \"none\"");
-        write_looks(out, body, materials);
+        write_looks(out, body);
         out.close();
     }
 
@@ -299,8 +298,9 @@ class Exporter {
                 }
             }
         }
-        write_usd_view(out, shot_of(store_, scene_.render), store_.frame_count(), frames_, seen,
-                       all);
+        const Shot shot = shot_of(store_, scene_.render);
+        write_usd_view(out, shot, frames_.first,
+                       view_track(shot, store_.frame_count(), frames_, seen, all));
     }
 
     std::vector<int> moves(const Track& track) const {
@@ -335,7 +335,8 @@ class Exporter {
         };
         if (!track.has_colors) {
             const int look = track.main_look();
-            const SurfaceMaterial main = look < 0 ? SurfaceMaterial() : looks_.material(look);
+            const SurfaceMaterial main =
+                look < 0 ? SurfaceMaterial() : looks_.all()[std::size_t(look)].material;
             out.value(name, "constant", {frames_.first},
                       [&](int) { put({main.color.cast<float>()}); });
             return;
@@ -410,11 +411,10 @@ class Exporter {
         }
     }
 
-    void write_looks(UsdText& out, std::size_t body, const std::string& materials) {
+    void write_looks(UsdText& out, std::size_t body) {
         const Track& track = track_[body];
         const auto bind = [&](int look) {
-            out.line(
-                fmt::format("rel material:binding = <{}/{}>", materials, looks_.identifier(look)));
+            out.line(fmt::format("rel material:binding = <{}>", look_[std::size_t(look)]));
         };
         if (track.look.empty()) return;
         // Also beside parts, which not all readers know.
@@ -423,8 +423,9 @@ class Exporter {
         out.line(fmt::format("uniform token subsetFamily:materialBind:familyType = \"{}\"",
                              track.all_have_looks ? "partition" : "nonOverlapping"));
         for (const int look : track.look) {
-            out.open(fmt::format("def GeomSubset \"{}\" (\n    {}\n)", looks_.identifier(look),
-                                 kUsdBinds));
+            const std::string& path = look_[std::size_t(look)];
+            out.open(fmt::format("def GeomSubset \"{}\" (\n    {}\n)",
+                                 path.substr(path.rfind('/') + 1), kUsdBinds));
             out.line(
                 "uniform token elementType = \"face\"\n"
                 "uniform token familyName = \"materialBind\"");
@@ -443,11 +444,12 @@ class Exporter {
     }
 
     const FrameStore& store_;
-    const UsdScene& scene_;
+    const ExportScene& scene_;
     const FrameRange frames_;
-    UsdMachines machines_;
+    MachineTracks machines_;
     std::vector<Track> track_;
-    UsdLooks looks_;
+    MeshLooks looks_{false};
+    std::vector<std::string> look_;  // paths
     std::string root_;
     Skin skin_;  // as last read
     std::optional<Progress> progress_;
@@ -469,8 +471,8 @@ void refuse_foreign(const fs::path& file) {
 
 }  // namespace
 
-UsdOutcome export_usd(const FrameStore& store, const UsdScene& scene, const FrameRange& frames,
-                      const fs::path& file) {
+ExportOutcome export_usd(const FrameStore& store, const ExportScene& scene,
+                         const FrameRange& frames, const fs::path& file) {
     refuse_frames_beyond(store.frame_count(), frames, scene.render.first_frame);
     refuse_foreign(file);
     const MadeFolder folder(fs::absolute(file).parent_path());

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "geometry/usd_look.h"
+#include "geometry/mesh_looks.h"
 #include "tests/catch.h"
 #include "tests/shared/bytes_of.h"
 #include "tests/shared/meshes.h"
@@ -89,7 +89,7 @@ struct Motion {
     Scratch scratch;
     std::vector<StoredFrame> frame;
     std::vector<TriMesh> skin;
-    UsdScene scene{"two-falls", {"a body", "a-body", "3rd"}};
+    ExportScene scene{"two-falls", {"a body", "a-body", "3rd"}};
 
     Motion() {
         scene.render.frame_rate = {24, 1};
@@ -111,7 +111,7 @@ struct Motion {
     }
     fs::path store() const { return scratch.path() / "motion.bin"; }
     fs::path file() const { return scratch.path() / "out" / "x.usda"; }
-    UsdOutcome write(const FrameRange& frames = {1, kFrames}) const {
+    ExportOutcome write(const FrameRange& frames = {1, kFrames}) const {
         return export_usd(FrameStore(store()), scene, frames, file());
     }
     Usda written(const FrameRange& frames = {1, kFrames}) const {
@@ -179,7 +179,7 @@ TEST_CASE("how large a file of USD becomes is known before it is written, about"
         }
         writer.finish();
     }
-    const UsdOutcome outcome = export_usd(FrameStore(scratch.path() / "motion.bin"),
+    const ExportOutcome outcome = export_usd(FrameStore(scratch.path() / "motion.bin"),
                                           {"run", {"ball"}}, {1, 5}, scratch.path() / "x.usda");
     CHECK(outcome.expected > 0.8 * double(outcome.bytes));
     CHECK(outcome.expected < 1.4 * double(outcome.bytes));
@@ -260,7 +260,7 @@ TEST_CASE("what does not change is written once, and what stays has a sample bef
 
 TEST_CASE("every face has the material of the skin, a textured one its image beside the file") {
     const Motion motion;
-    const UsdOutcome outcome = motion.write();
+    const ExportOutcome outcome = motion.write();
     const Usda usd(bytes_of(motion.file()));
     CHECK(outcome.bodies == 3);
     CHECK(outcome.bytes == fs::file_size(motion.file()));
@@ -395,7 +395,7 @@ TEST_CASE("an image is as much darker in USD as the colour that all its vertices
     mesh.position_color.assign(5, {0.25f, 0.5f, 1});
     const bool is_uniform = GENERATE(true, false);
     if (!is_uniform) mesh.position_color[1] = {1, 1, 1};
-    UsdLooks looks;
+    MeshLooks looks(false);
     looks.of_polygons(mesh, rejoin_polygons(mesh));
     CHECK(looks.without_colors() ==
           (is_uniform ? std::set<std::string>{} : std::set<std::string>{"hide"}));

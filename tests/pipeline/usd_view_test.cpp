@@ -27,7 +27,7 @@ constexpr int kFrames = 6, kSecond = 4;  // the first frame of the second stage
 // A red box that moves and turns, under two machines; the second one has a floor.
 struct MovedBar {
     Scratch scratch;
-    UsdScene scene{"line", {"bar"}};
+    ExportScene scene{"line", {"bar"}};
     std::vector<StoredFrame> frame;
     TriMesh bar = box_mesh(Vec3(-1, -0.25, -0.5), Vec3(1, 0.25, 0.5));
     TriMesh tool = box_mesh(Vec3(-0.1, -0.2, -0.3), Vec3(0.1, 0.2, 0.3));
