@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/stopwatch.h"
 #include "base/text.h"
+#include "pipeline/glb_export.h"
 #include "pipeline/part_look.h"
 #include "pipeline/render_record.h"
 #include "pipeline/run_record.h"
@@ -41,8 +42,9 @@ int export_run(const ExportArguments& given) {
     scene.tools = !given.no_tools;
     const fs::path file = given.out.empty() ? RunDirectory::exported(run) / (scene.name + ".usda")
                                             : fs::path(given.out);
-    if (file.extension() != ".usda") {
-        fail(ExitCode::command_line, "{}: only .usda can be written", file.string());
+    const bool as_glb = file.extension() == ".glb";
+    if (!as_glb && file.extension() != ".usda") {
+        fail(ExitCode::command_line, "{}: the name must end in .usda or .glb", file.string());
     }
     const FrameStore store(RunDirectory::store_in(run));
     refuse_unknown_parts(store, scene.render);
@@ -51,7 +53,7 @@ int export_run(const ExportArguments& given) {
     Stopwatch watch;
     const ExportOutcome outcome = [&] {
         const auto lap = watch.lap("export");
-        return export_usd(store, scene, frames, file);
+        return (as_glb ? export_glb : export_usd)(store, scene, frames, file);
     }();
     log_info("{}: {}, {}, {}, {}", file.string(), counted(outcome.bodies, "body", "bodies"),
              counted(outcome.tools, "tool", "tools"),
@@ -78,18 +80,20 @@ void add_export_command(CLI::App& app, Action& chosen) {
     CLI::App* command = add_command(
         app, "export",
         "Write a finished run's animated skins and tools, and the camera of its stills, into one "
-        "file for Blender, Houdini, Maya, ...",
+        "file: USD for Blender, Houdini, Maya, ..., or glTF for viewers, engines and web pages",
         "  swage export renders/calf-line\n"
         "  swage export renders/calf-line --frames 1-40 --out /tmp/bend.usda\n"
+        "  swage export renders/calf-line --out calf.glb\n"
         "  swage export renders/calf-line --camera-azimuth 90 --size 1920x1080\n",
         chosen, [] { return export_run(given); });
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
     command
         ->add_option(
             "-o,--out", given.out,
-            "USD text file to write (default: RUN/usd/SCENE.usda), in metres: every body with its "
-            "materials and its place in every frame, tools under machine/STAGE, the stills' camera "
-            "and key_lamp. Images go beside it. An earlier export of that name is replaced")
+            "file to write (default: RUN/usd/SCENE.usda), in metres: every body with its materials "
+            "and its place in every frame, tools by stage, the stills' camera. A .usda is USD as "
+            "text, with key_lamp and fields, and images beside it; a .glb is binary glTF, with "
+            "images in it. An earlier export of that name is replaced")
         ->type_name("FILE");
     add_frame_arguments(*command, given.frames);
     add_view_arguments(*command, given.view);

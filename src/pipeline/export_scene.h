@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/machine_tracks.h"
@@ -34,5 +37,10 @@ struct ExportOutcome {
     double expected = 0;             // bytes, before it was written; where disk lacks, it is told
     std::vector<std::string> image;  // files beside it that it needs
 };
+
+// Only an earlier file gives way to another: Error(foreign) where `is_ours` of its first bytes says
+// that it is something else's, Error(output) where it cannot be read.
+void refuse_foreign(const std::filesystem::path& file,
+                    const std::function<bool(std::string_view)>& is_ours);
 
 }  // namespace swage

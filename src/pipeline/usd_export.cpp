@@ -456,25 +456,12 @@ class Exporter {
     int samples_ = 0;  // of places, as far as they are written
 };
 
-// Only an earlier file of these gives way to another.
-void refuse_foreign(const fs::path& file) {
-    std::error_code unknown;
-    if (!fs::exists(file, unknown)) return;
-    std::string why, begin(kBegin.size(), '\0');
-    const FileHandle handle = open_plain_file(file, why);
-    if (!handle.is_open()) fail(ExitCode::output, "{}: {}", file.string(), why);
-    if (read_up_to(handle.id(), begin.data(), begin.size()) != begin.size() || begin != kBegin) {
-        fail(ExitCode::foreign, "{}: was not written by swage export; choose another --out",
-             file.string());
-    }
-}
-
 }  // namespace
 
 ExportOutcome export_usd(const FrameStore& store, const ExportScene& scene,
                          const FrameRange& frames, const fs::path& file) {
     refuse_frames_beyond(store.frame_count(), frames, scene.render.first_frame);
-    refuse_foreign(file);
+    refuse_foreign(file, [](std::string_view begin) { return begin.starts_with(kBegin); });
     const MadeFolder folder(fs::absolute(file).parent_path());
     return Exporter(store, scene, frames).write(file);
 }

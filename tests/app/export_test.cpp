@@ -51,6 +51,14 @@ TEST_CASE("what a run exports ends as the mesh that it leaves, whatever the lang
                     SWAGE_SOURCE_DIR, {{"LC_ALL", "de_DE.UTF-8"}})
               .code == 0);
     CHECK(bytes_of(other) == bytes_of(file));
+    // As binary glTF, which an own reader takes for the mesh of its first frame.
+    const fs::path glb = scratch.path() / "new/other.glb";
+    REQUIRE(run_swage({"export", run.string(), "--no-tools", "--out", glb.string()}).code == 0);
+    const Outcome read = run_swage({"info", glb.string(), "--json"});
+    const Outcome began = run_swage({"info", (scratch.path() / "bar.obj").string(), "--json"});
+    INFO(read.err << began.err);
+    CHECK(parse_json(read.out).at("volume_m3").get<double>() ==
+          Approx(parse_json(began.out).at("volume_m3").get<double>()).epsilon(1e-6));
     // The run may be thrown away with it.
     CHECK(
         run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--fresh"}).code ==
@@ -80,6 +88,7 @@ TEST_CASE("what cannot be exported is told, and leaves what was there as it was"
     const fs::path scene = put_small_scene(scratch.path()), run = scratch.path() / "run";
     REQUIRE(run_swage({"run", scene.string(), "--out", run.string(), "--no-render"}).code == 0);
     put_text(scratch.path() / "mine.usda", "#usda 1.0\n");
+    put_text(scratch.path() / "mine.glb", "glTF");
     fs::create_directory(scratch.path() / "folder.usda");
     const auto before = files_below(scratch.path());
     const auto refused = [&](const fs::path& of, const std::string& out, int code,
@@ -92,9 +101,10 @@ TEST_CASE("what cannot be exported is told, and leaves what was there as it was"
     };
     refused(scratch.path(), "x.usda", 5, "is not a finished run of swage");
     refused(scratch.path() / "none", "x.usda", 5, "no such folder");
-    refused(run, "x.abc", 2, "x.abc: only .usda can be written");
+    refused(run, "x.abc", 2, "x.abc: the name must end in .usda or .glb");
     refused(run, "mine.usda", 8,
             "mine.usda: was not written by swage export; choose another --out");
+    refused(run, "mine.glb", 8, "mine.glb: was not written by swage export; choose another --out");
     refused(run, "folder.usda", 5, "is a folder, not a file");
     CHECK(run_swage({"export", run.string(), "--frames", "2-9"}).code == 2);
     rlimit unlimited{};
@@ -102,6 +112,7 @@ TEST_CASE("what cannot be exported is told, and leaves what was there as it was"
     const rlimit small = {20'000, unlimited.rlim_max};
     ::setrlimit(RLIMIT_FSIZE, &small);
     refused(run, "new/x.usda", 5, "x.usda: cannot be written: File too large");
+    refused(run, "new/x.glb", 5, "x.glb: cannot be written: File too large");
     ::setrlimit(RLIMIT_FSIZE, &unlimited);
     CHECK_FALSE(fs::exists(scratch.path() / "new"));
     CHECK_FALSE(fs::exists(run / "usd"));

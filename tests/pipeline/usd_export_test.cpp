@@ -180,7 +180,7 @@ TEST_CASE("how large a file of USD becomes is known before it is written, about"
         writer.finish();
     }
     const ExportOutcome outcome = export_usd(FrameStore(scratch.path() / "motion.bin"),
-                                          {"run", {"ball"}}, {1, 5}, scratch.path() / "x.usda");
+                                             {"run", {"ball"}}, {1, 5}, scratch.path() / "x.usda");
     CHECK(outcome.expected > 0.8 * double(outcome.bytes));
     CHECK(outcome.expected < 1.4 * double(outcome.bytes));
 }
