@@ -33,6 +33,7 @@ ExportScene export_scene_of(const Json& record, const ExportArguments& given) {
     scene.name = fs::path(names.scene).stem().string();
     scene.body = std::move(names.body);
     scene.stage = std::move(names.stage);
+    scene.piece = std::move(names.piece);
     return scene;
 }
 

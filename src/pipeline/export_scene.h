@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/machine_tracks.h"
+#include "pipeline/piece_track.h"
 #include "render/settings.h"
 
 namespace swage {
@@ -19,6 +20,7 @@ struct ExportScene {
     std::vector<std::string> body;  // names; further bodies are called by their number
     RenderSettings render = {};     // of its stills
     std::vector<StageFrames> stage = {};
+    std::vector<NamedPieces> piece = {};  // after the last stage
     bool tools = true;  // as far as its stills have them
 
     RenderSettings shown() const {

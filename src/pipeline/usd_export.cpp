@@ -20,8 +20,11 @@
 #include "geometry/usd_time.h"
 #include "pipeline/free_room.h"
 #include "pipeline/made_folder.h"
+#include "pipeline/piece_track.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/signals.h"
+#include "pipeline/skin_track.h"
+#include "pipeline/skin_velocity.h"
 #include "pipeline/usd_camera.h"
 #include "pipeline/usd_machine.h"
 #include "skin/cut_layout.h"
@@ -32,39 +35,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Float3 = Eigen::Vector3f;
-
 constexpr std::string_view kBegin = "#usda 1.0\n(\n    doc = \"A run of swage";
 
 // Bytes of what is written as text, about.
 constexpr double kPlaceBytes = 38, kNormalBytes = 30, kCornerBytes = 13, kFaceBytes = 3;
 constexpr double kCornerBytesInImage = 20, kColorBytes = 32, kFieldBytes = 13;
+constexpr double kVelocityBytes = 38;
 constexpr double kCornerBytesOfColor = 6;
 
 struct Skin {
     int id = -1;
     TriMesh mesh;
     PolygonCorners polygons;
-};
-
-// What is to be known of a body before it is written; arrays have a value a frame.
-struct Track {
-    std::string name, identifier;
-    std::vector<int> skin;
-    std::vector<std::uint64_t> shape;  // hash of places and skin
-    std::vector<std::array<Float3, 2>> extent;
-    std::vector<std::vector<std::uint64_t>> field;  // hashes of each one's values and the skin
-    std::vector<std::size_t> vertices, smooth_groups;
-    double skin_bytes = 0;           // of all that is written once a skin
-    std::vector<int> look;           // all that its polygons have
-    std::vector<std::size_t> faces;  // of each of these
-    bool all_have_looks = true, is_open = false, has_normals = true, has_uv = false,
-         has_colors = false, has_corner_colors = false;
-
-    int main_look() const {  // of the most faces, -1: none
-        const auto most = std::max_element(faces.begin(), faces.end());
-        return most == faces.end() ? -1 : look[std::size_t(most - faces.begin())];
-    }
 };
 
 class Exporter {
@@ -78,7 +60,7 @@ class Exporter {
     ExportOutcome write(const fs::path& file) {
         look_at_all();
         int samples = 0;
-        for (const Track& track : track_) {
+        for (const SkinTrack& track : track_) {
             samples += static_cast<int>(moves(track).size()) * (track.has_normals ? 2 : 1);
         }
         for (const std::string& name : looks_.without_colors()) {
@@ -146,7 +128,7 @@ class Exporter {
             track_.resize(std::max(track_.size(), stored.body.size()));
             machines_.look_at(frame, stored, looks_);
             for (std::size_t b = 0; b < stored.body.size(); ++b) {
-                look_at(track_[b], stored.body[b]);
+                track_[b].add(stored.body[b]);
                 std::vector<std::size_t>& groups = track_[b].smooth_groups;
                 groups.push_back(groups.empty() ? 0 : groups.back());
                 if (is_new_skin(track_[b].skin)) look_at_skin(track_[b], skin(b, frame));
@@ -159,29 +141,7 @@ class Exporter {
     static bool is_new_skin(const std::vector<int>& skin) {
         return skin.size() < 2 || skin.back() != skin[skin.size() - 2];
     }
-    static void look_at(Track& track, const StoredBody& body) {
-        std::array<Float3, 2> extent = {Float3::Zero(), Float3::Zero()};
-        Hasher shape;
-        shape.add_bytes(&body.skin, sizeof body.skin);
-        for (std::size_t i = 0; i < body.position.size(); ++i) {
-            const Float3 p = body.position[i].cast<float>();
-            shape.add_bytes(p.data(), 3 * sizeof(float));
-            extent[0] = i == 0 ? p : extent[0].cwiseMin(p).eval();
-            extent[1] = i == 0 ? p : extent[1].cwiseMax(p).eval();
-        }
-        track.field.resize(body.field.size());
-        for (std::size_t n = 0; n < body.field.size(); ++n) {
-            Hasher values;
-            values.add_bytes(&body.skin, sizeof body.skin);
-            values.add_bytes(body.field[n].data(), body.field[n].size() * sizeof(float));
-            track.field[n].push_back(values.value());
-        }
-        track.vertices.push_back(body.position.size());
-        track.skin.push_back(body.skin);
-        track.shape.push_back(shape.value());
-        track.extent.push_back(extent);
-    }
-    void look_at_skin(Track& track, const Skin& skin) {
+    void look_at_skin(SkinTrack& track, const Skin& skin) {
         for (const int look : looks_.of_polygons(skin.mesh, skin.polygons)) {
             if (look < 0) track.all_have_looks = false;
             if (look < 0) continue;
@@ -212,7 +172,7 @@ class Exporter {
 
     double expected_bytes() const {
         double bytes = 0;
-        for (const Track& track : track_) {
+        for (const SkinTrack& track : track_) {
             const auto sum = [&](const std::vector<std::size_t>& count,
                                  const std::vector<int>& frames) {
                 double all = 0;
@@ -222,6 +182,9 @@ class Exporter {
                 return all;
             };
             bytes += track.skin_bytes + kPlaceBytes * sum(track.vertices, moves(track));
+            if (track.changes_faces()) {
+                bytes += kVelocityBytes * sum(track.vertices, moves(track));
+            }
             if (track.has_normals) bytes += kNormalBytes * sum(track.smooth_groups, moves(track));
             for (const auto& field : track.field) {
                 bytes += kFieldBytes *
@@ -263,7 +226,7 @@ class Exporter {
     }
 
     void write_body(UsdText& out, std::size_t body) {
-        const Track& track = track_[body];
+        const SkinTrack& track = track_[body];
         out.open(
             usd_prim("Mesh", track.name, track.identifier, track.look.empty() ? "" : kUsdBinds));
         if (track.is_open) out.line("uniform bool doubleSided = 1");
@@ -278,19 +241,52 @@ class Exporter {
             const std::vector<Vec3> place = places(body, frame);
             out.list(place.size(), [&](std::size_t i) { out.vector<3>(place[i].cast<float>()); });
         });
+        if (track.changes_faces()) write_velocities(out, body, moves);
         write_colors(out, body);
         if (track.has_normals) write_normals(out, body, moves);
         if (track.has_uv) write_uv(out, body);
         write_fields(out, body);
+        write_pieces(out, body);
         out.line("uniform token subdivisionScheme = \"none\"");
         write_looks(out, body);
         out.close();
     }
 
+    // At the times of the points, without which readers do not take them.
+    void write_velocities(UsdText& out, std::size_t body, const std::vector<int>& moves) {
+        out.value("vector3f[] velocities", "", moves, [&](int frame) {
+            throw_if_interrupted();
+            const std::vector<Vec3> velocity =
+                skin_velocity(store_, body, frame, scene_.render.frame_rate.value());
+            out.list(velocity.size(),
+                     [&](std::size_t i) { out.vector<3>(velocity[i].cast<float>()); });
+        });
+    }
+
+    // Of a body that comes apart in these frames; numbers as in `pieces.json`.
+    void write_pieces(UsdText& out, std::size_t body) {
+        if (!track_[body].changes_faces()) return;
+        if (!pieces_) pieces_.emplace(store_, scene_.piece);
+        bool comes_apart = false;
+        for (int p = 1; p < pieces_->count(body); ++p) {
+            comes_apart = comes_apart || pieces_->first_frame(body, p) <= frames_.last;
+        }
+        if (!comes_apart) return;
+        out.value("int[] primvars:piece", "uniform", new_skins(body, Between::held),
+                  [&](int frame) {
+                      const Skin& now = skin(body, frame);
+                      const std::vector<int> piece = pieces_->of_triangles(body, now.id, now.mesh);
+                      out.list(now.polygons.count(), [&](std::size_t p) {
+                          const int corner = now.polygons.corner[now.polygons.first[p]];
+                          out.number(piece.at(std::size_t(corner / 3)) + 1);
+                      });
+                  });
+    }
+
     // Camera and lamp of the stills.
     void write_view(UsdText& out) const {
         Box seen = machines_.box(false), all = machines_.box(true);
-        for (const Track& track : track_) {
+        for (const SkinTrack& track : track_) {
             for (const auto& extent : track.extent) {
                 for (const Float3& end : extent) {
                     seen.grow(end.cast<double>());
@@ -303,7 +299,7 @@ class Exporter {
                        view_track(shot, store_.frame_count(), frames_, seen, all));
     }
 
-    std::vector<int> moves(const Track& track) const {
+    std::vector<int> moves(const SkinTrack& track) const {
         return changes(track.shape, frames_.first, Between::straight);
     }
     std::vector<int> new_skins(std::size_t body, Between between) const {
@@ -328,7 +324,7 @@ class Exporter {
 
     // USD's are linear, as those of meshes here are. Without those of vertices one stands for all.
     void write_colors(UsdText& out, std::size_t body) {
-        const Track& track = track_[body];
+        const SkinTrack& track = track_[body];
         const std::string name = "color3f[] primvars:displayColor";
         const auto put = [&](const std::vector<Float3>& color) {
             out.list(color.size(), [&](std::size_t i) { out.vector(color[i]); });
@@ -412,7 +408,7 @@ class Exporter {
     }
 
     void write_looks(UsdText& out, std::size_t body) {
-        const Track& track = track_[body];
+        const SkinTrack& track = track_[body];
         const auto bind = [&](int look) {
             out.line(fmt::format("rel material:binding = <{}>", look_[std::size_t(look)]));
         };
@@ -447,11 +443,12 @@ class Exporter {
     const ExportScene& scene_;
     const FrameRange frames_;
     MachineTracks machines_;
-    std::vector<Track> track_;
+    std::vector<SkinTrack> track_;
     MeshLooks looks_{false};
     std::vector<std::string> look_;  // paths
     std::string root_;
     Skin skin_;  // as last read
+    std::optional<PieceTrack> pieces_;
     std::optional<Progress> progress_;
     int samples_ = 0;  // of places, as far as they are written
 };

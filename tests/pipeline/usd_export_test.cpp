@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "geometry/box_mesh.h"
 #include "geometry/mesh_looks.h"
 #include "tests/catch.h"
 #include "tests/shared/bytes_of.h"
@@ -216,6 +217,59 @@ TEST_CASE("of a run in USD every frame has the faces and the places of its skins
             CHECK(usd.numbers(path + ".primvars:normals:indices", f).size() == corners.size());
         }
     }
+}
+
+TEST_CASE("points of a body whose faces change have their velocity in USD, in units per second") {
+    const Motion motion;
+    for (const FrameRange& frames : {FrameRange{1, kFrames}, FrameRange{3, 6}}) {
+        const Usda usd = motion.written(frames);
+        CHECK(usd.times(kBody + ".velocities") == usd.times(kBody + ".points"));
+        for (int f = frames.first; f <= frames.last; ++f) {
+            const auto velocity = usd.numbers(kBody + ".velocities", f);
+            REQUIRE(velocity.size() == usd.numbers(kBody + ".points", f).size());
+            // It has fallen by f * f / 10, at 24 frames a second; over the cut too.
+            const int from = std::min(f, kFrames - 1);
+            for (std::size_t i = 0; i < velocity.size(); ++i) {
+                const double expected = i % 3 == 1 ? -2.4 * (2 * from + 1) : 0;
+                CHECK_THAT(velocity[i], Catch::Matchers::WithinAbs(expected, 1e-4));
+            }
+        }
+        // Readers find that of the others between their samples.
+        CHECK_FALSE(usd.has("/two_falls/a_body_2.velocities"));
+        CHECK_FALSE(usd.has("/two_falls/_3rd.velocities"));
+    }
+    CHECK_FALSE(motion.written({1, kCut - 1}).has(kBody + ".velocities"));
+}
+
+TEST_CASE("a body that comes apart has the numbers of its pieces at its faces in USD") {
+    const Scratch scratch;
+    const TriMesh whole = box_mesh(Vec3(0, 0, 0), Vec3(3, 1, 1));
+    TriMesh parted = box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1));  // the smaller first
+    const TriMesh rest = box_mesh(Vec3(1, 0, 0), Vec3(3, 1, 1));
+    const int before = static_cast<int>(parted.position.size());
+    const std::size_t small = parted.triangle.size();
+    parted.position.insert(parted.position.end(), rest.position.begin(), rest.position.end());
+    for (const Corners& t : rest.triangle) {
+        parted.triangle.push_back({t[0] + before, t[1] + before, t[2] + before});
+    }
+    TriMesh plain[] = {whole, parted};
+    for (TriMesh& one : plain) {  // triangles alone
+        TriMesh bare;
+        bare.position = one.position;
+        bare.triangle = one.triangle;
+        one = bare;
+    }
+    const Usda usd(exported(scratch.path(), {plain[0], plain[1]}));
+    CHECK(usd.times("/run/one.primvars:piece") == std::vector<int>{1, 2});
+    CHECK(usd.numbers("/run/one.primvars:piece", 1) ==
+          std::vector<float>(whole.triangle.size(), 1));
+    std::vector<float> expected(small, 2);
+    expected.resize(parted.triangle.size(), 1);  // of the larger
+    CHECK(usd.numbers("/run/one.primvars:piece", 2) == expected);
+    CHECK(bytes_of(scratch.path() / "out" / "x.usda")
+              .find("primvars:piece (interpolation = \"uniform\")") != std::string::npos);
+    // A body that only gets other faces is one piece.
+    CHECK_FALSE(Motion().written().has(kBody + ".primvars:piece"));
 }
 
 TEST_CASE("corners have their place in the image and their normal, those without lie at 0, 0") {
