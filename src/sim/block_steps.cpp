@@ -59,7 +59,11 @@ BlockSolver::BlockSolver(const std::vector<Aggregate*>& bodies, const Apparatus&
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         step_ = std::min(step_, step_of(b));
     }
-    if (settings.solver != Solver::implicit_steps) bodies_.limit_stiffness(step_);
+    limit_stiffness();
+}
+
+void BlockSolver::limit_stiffness() {
+    if (settings_.solver != Solver::implicit_steps) bodies_.limit_stiffness(step_);
 }
 
 double BlockSolver::step_of(std::size_t body) const {
@@ -70,7 +74,9 @@ double BlockSolver::step_of(std::size_t body) const {
 void BlockSolver::masses_changed(std::size_t body, const std::vector<double>& was) {
     const double before = bodies_[body].stable_step();
     bodies_.masses_changed(body, was);
-    if (bodies_[body].stable_step() < before) step_ = std::min(step_, step_of(body));
+    if (bodies_[body].stable_step() >= before) return;
+    step_ = std::min(step_, step_of(body));
+    limit_stiffness();
 }
 
 double BlockSolver::connections_changed(std::size_t body, const Drive& now) {

@@ -60,6 +60,7 @@ class BlockSolver {
         io(bodies_, step_, energy_, started_, share_, good_blocks_, halvings_, steps_,
            rescued_blocks_);
         for (std::size_t b = 0; b < implicit_.size(); ++b) implicit_[b].visit(io, bodies_[b]);
+        if constexpr (Io::kReads) limit_stiffness();
     }
 
   private:
@@ -96,6 +97,7 @@ class BlockSolver {
                           const std::vector<BodyOutcome>& so_far, MoveOutcome& outcome);
     bool can_be_rescued() const;
     double step_of(std::size_t body) const;  // that it alone would allow at first [s]
+    void limit_stiffness();                  // of contacts, for its steps
 
     const Apparatus& apparatus_;
     SimSettings settings_;

@@ -163,6 +163,7 @@ void MovingBody::masses_changed(const std::vector<double>& was) {
     swings_.masses_changed(matter_);
     step_ = std::min(step_, swage::stable_step(matter_, safety_, lattice_, swings_, damping_));
     flowed_ = true;  // the present one is to be found anew
+    drag_.find_limits(matter_, step_);
 }
 
 void MovingBody::renew_candidates(const Drive& before, const Drive& now, double way) {

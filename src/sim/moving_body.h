@@ -157,6 +157,7 @@ class MovingBody {
         contacts_.visit(io, matter_);
         io(pushes_, swings_, step_, present_step_, flowed_, drag_, force_, load_, turned_, gone_,
            implicit_, branch_energy_, block_energy_, gravity_, inside_out_, loss_to_book_);
+        if constexpr (Io::kReads) drag_.find_limits(matter_, step_);
     }
 
   private:

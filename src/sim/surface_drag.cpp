@@ -30,13 +30,22 @@ SurfaceDrag::SurfaceDrag(const Aggregate& matter, const SimSettings& settings, d
         if (cell_.empty() || cell_.back().corner != by.corner) cell_.push_back({by.corner, p, p});
         ++cell_.back().end;
         Patch& patch = patch_.emplace_back();
-        patch.place = vec4(surface.place(p), kMostShare * lightest_carrier(matter, p) / step);
+        patch.place = vec4(surface.place(p), 0);  // find_limits()
         patch.area = vec4(surface.area(p) / (a * a) * surface.normal(p));
         patch.weight = by.weight;
     }
-    connections_changed(matter);
+    find_limits(matter, step);
     push_.resize(cell_.size());
     chunk_.resize(chunks_of(cell_.size(), kChunk));
+}
+
+void SurfaceDrag::find_limits(const Aggregate& matter, double step) {
+    if (!acts()) return;
+    step_ = step;
+    for (std::size_t p = 0; p < patch_.size(); ++p) {
+        patch_[p].place[3] = kMostShare * lightest_carrier(matter, p) / step;
+    }
+    connections_changed(matter);
 }
 
 void SurfaceDrag::connections_changed(const Aggregate& matter) {

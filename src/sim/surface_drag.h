@@ -26,6 +26,8 @@ class SurfaceDrag {
     // A blade or a crack has changed which cells are whole: the medium flows past these only, and
     // past what was laid open.
     void connections_changed(const Aggregate& matter);
+    // For steps of this length [s], and the masses that the particles have now.
+    void find_limits(const Aggregate& matter, double step);
 
     struct Drag {
         double power = 0;      // that the forces take [W]
