@@ -18,6 +18,9 @@ namespace {
 // a thin wall may lie nearer, but look apart.
 constexpr double kNeighbour = 0.9;
 constexpr double kLooksApart = -0.5;
+// Of a closed surface the areas that look one way and the other are one; those of a bowl whose rim
+// is too sharp for its outside to be found around it differ by its mouth. Coarse patches are flat.
+constexpr double kMouth = 0.1;  // of the area
 
 Side side_of(const Vec3& normal) {
     constexpr Side kSides[] = {Side::left, Side::right, Side::bottom,
@@ -127,9 +130,10 @@ std::vector<char> cavity_walls(const Aggregate& matter) {
     std::iota(all.begin(), all.end(), 0);
     const HangTogether parts = hang_together(matter, all);
     std::vector<double> area(parts.count, 0.0), volume(parts.count, 0.0);
-    std::vector<Vec3> middle(parts.count, Vec3::Zero());
+    std::vector<Vec3> middle(parts.count, Vec3::Zero()), mouth(parts.count, Vec3::Zero());
     for (std::size_t p = 0; p < all.size(); ++p) {
         area[parts.of[p]] += matter.surface.area(p);
+        mouth[parts.of[p]] += matter.surface.area(p) * matter.surface.normal(p);
         middle[parts.of[p]] += matter.surface.area(p) * matter.surface_reference(p);
     }
     for (std::size_t p = 0; p < all.size(); ++p) {
@@ -139,7 +143,10 @@ std::vector<char> cavity_walls(const Aggregate& matter) {
             matter.surface.area(p) * matter.surface.normal(p).dot(from_middle) / 3;
     }
     std::vector<char> is_wall(all.size());
-    for (std::size_t p = 0; p < all.size(); ++p) is_wall[p] = volume[parts.of[p]] < 0;
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        const std::size_t part = parts.of[p];
+        is_wall[p] = volume[part] < 0 && mouth[part].norm() < kMouth * area[part];
+    }
     return is_wall;
 }
 

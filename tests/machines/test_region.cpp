@@ -148,7 +148,13 @@ TEST_CASE(
             return std::max({r - 0.6, 0.3 - r, std::abs(x.z()) - 1});
         },
         Vec3(-0.8, -0.8, -1.2), Vec3i(16, 16, 24), 0.1);
-    for (const Aggregate& none : {tube, upright()}) {
+    // A bowl too, though its rim is sharp: 40 degrees.
+    const Aggregate bowl = make_shape(
+        [&](const Vec3& x) {
+            return std::max(ball(x, Vec3::Zero(), 0.7), -ball(x, Vec3(0, 0.5, 0), 0.75));
+        },
+        Vec3::Constant(-0.8), Vec3i(16, 16, 16), 0.1);
+    for (const Aggregate& none : {tube, upright(), bowl}) {
         CHECK_THROWS_WITH(with(none, spec), Catch::Contains("load push acts on nothing: no part of "
                                                             "the work-piece's surface is the wall "
                                                             "of a closed cavity"));
