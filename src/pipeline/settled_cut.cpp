@@ -18,6 +18,7 @@ struct UncutSkin {
     explicit UncutSkin(const WorkPiece& p)
         : skin(p.skin),
           mount(p.mount),
+          probe(p.probe),
           is_torn(p.is_torn),
           is_parted(p.is_parted),
           whole_skin(p.whole_skin),
@@ -25,6 +26,7 @@ struct UncutSkin {
           inset(p.inset) {}
     void put_back(WorkPiece& p) {
         p.skin = std::move(skin), p.mount = std::move(mount);
+        p.probe = std::move(probe);
         p.is_torn = is_torn, p.is_parted = is_parted;
         p.whole_skin = std::move(whole_skin), p.whole_mount = std::move(whole_mount);
         p.inset = std::move(inset);
@@ -32,7 +34,7 @@ struct UncutSkin {
     }
 
     TriMesh skin;
-    Mount mount;
+    Mount mount, probe;
     bool is_torn, is_parted;
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;

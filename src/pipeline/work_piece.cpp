@@ -21,6 +21,7 @@
 #include "sim/cell_volume.h"
 #include "skin/boundary.h"
 #include "skin/broken_skin.h"
+#include "skin/cut_places.h"
 #include "skin/divided_mesh.h"
 #include "skin/skin_volume.h"
 #include "skin/whole_parts.h"
@@ -362,6 +363,8 @@ CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sw
     const bool is_cut = !is_made_anew(piece);
     const Insides insides = is_cut ? insides_now(piece.inset) : Insides();
     cut_insets(piece.inset, piece.matter, sweep);
+    keep_to_sides(piece.probe, piece.matter, sweep,
+                  box_of(piece.position).widened(piece.matter.lattice.spacing));
     if (!is_cut) return {};
     CutResult shown =
         cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep, insides);

@@ -11,8 +11,8 @@
 #include "geometry/disjoint_sets.h"
 #include "geometry/mesh_edit.h"
 #include "matter/cell_middle.h"
-#include "skin/blade_path.h"
 #include "skin/body_map.h"
+#include "skin/cut_places.h"
 #include "skin/halve_along.h"
 #include "skin/piece_map.h"
 #include "skin/split_attributes.h"
@@ -363,21 +363,11 @@ class PathCut {
         }
     }
 
-    CornerMask corners_on_side(CellId cell, const BladePath& path, int own) const {
-        const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
-        CornerMask mask = 0;
-        for (int c = 0; c < 8; ++c) {
-            const Vec3 at = matter_.particle_position.at(corner[c]);
-            mask |= static_cast<CornerMask>(path.side(at) == own) << c;
-        }
-        return mask;
-    }
-
     void take_side(int v, const SidedPath& one, const Vec3& world) {
         const double a = matter_.lattice.spacing;
         const int own = one.own[v];
         if (own == 0 || std::abs(one.path.height(world)) > 4 * a * one.path.steepest) return;
-        const CornerMask mask = corners_on_side(mount_.cell[v], one.path, own);
+        const CornerMask mask = corners_on_side(matter_, mount_.cell[v], one.path, own);
         if (mask == kAllCorners || !one.path.near(one.path.flat(world), 2 * a)) return;
         if (mount_.side[v] & mask) {
             mount_.side[v] &= mask;
@@ -396,7 +386,7 @@ class PathCut {
             CornerMask side = pieces_.side_of_piece(cell, reference, piece);
             for (const SidedPath& one : so_far_.path) {
                 const bool parts = one.own[v] != 0 && one.path.near(one.path.flat(world), 2 * a);
-                if (parts) side &= corners_on_side(cell, one.path, one.own[v]);
+                if (parts) side &= corners_on_side(matter_, cell, one.path, one.own[v]);
             }
             return side;
         };
@@ -425,11 +415,9 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
     CutResult result;
     const double a = matter.lattice.spacing;
     std::vector<Vec3> now = position;
-    BladePaths swept = blade_paths(sweep, box_of(position).widened(a), 1e-3 * a);
+    const BladePaths swept = paths_between_particles(sweep, box_of(position).widened(a), a);
     result.has_folded = swept.has_folded;
-    for (BladePath& path : swept.path) {
-        // As the blade does, which never runs exactly through a particle.
-        path.point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+    for (const BladePath& path : swept.path) {
         if (path.relief) halve_edges_along(path, kBentEdge * a, mesh, now, mount, matter);
     }
     CutSoFar cut;

@@ -96,6 +96,34 @@ TEST_CASE("a probe in a cell that is parted goes with its own side") {
     CHECK((after[1].place - before[1].place - apart).norm() < 1e-12);
 }
 
+TEST_CASE(
+    "a probe goes with the side of the blade's path that it lies on, not of the next corner") {
+    const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::boundary);
+    BodySpec body = probed_bar();
+    body.mold.across = 4;
+    const double a = bar(body, kind).matter.lattice.spacing;
+    const double share = GENERATE(0.1, 0.3, 0.7, 0.95);  // of the cell that the blade goes through
+    const double cut = share * a;
+    for (int n : {0, 1}) {
+        const double x = cut + (n == 0 ? -0.02 : 0.02) * a;
+        body.probe[n].at = Vec3(0.5 + x / 0.4, 0.4, 0.6);
+    }
+    WorkPiece piece = bar(body, kind);
+    const std::vector<ProbePlace> before = probe_places({body}, {piece});
+    cut_skins(piece, {{Vec3(cut, -1, -1), Vec3(cut, 1, -1), Vec3(cut, 1, 1)},
+                      {Vec3(cut, -1, -1), Vec3(cut, 1, 1), Vec3(cut, -1, 1)}});
+    test::sever_plane(piece.matter, {cut, 0, 0}, Vec3::UnitX());
+    const Vec3 apart(0.3, 0, 0);
+    for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
+        if (piece.matter.particle_reference.at(p).x() > cut) {
+            piece.matter.particle_position.add(p, apart);
+        }
+    }
+    const std::vector<ProbePlace> after = probe_places({body}, {piece});
+    CHECK((after[0].place - before[0].place).norm() < 1e-12);
+    CHECK((after[1].place - before[1].place - apart).norm() < 1e-12);
+}
+
 TEST_CASE("a probe beside the matter is refused where the scene asks for it") {
     InputMesh input;
     input.mesh = test::together(box_mesh({-0.2, -0.05, -0.1}, {0, 0.05, 0.1}),
