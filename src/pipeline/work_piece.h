@@ -101,6 +101,7 @@ int show_matter(WorkPiece& piece, bool has_parted);
 
 // Cuts a skin along all that blades will sweep (skin/cut_mesh.h), that which is parted where matter
 // broke as well as the whole one that it is made from; not a boundary that is made anew.
+// Probes keep to their sides of that.
 CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep);
 
 }  // namespace swage
