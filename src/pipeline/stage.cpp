@@ -16,6 +16,7 @@
 #include "pipeline/limit_watch.h"
 #include "pipeline/machine_place.h"
 #include "pipeline/motion_note.h"
+#include "pipeline/parted_grips.h"
 #include "pipeline/passed_watch.h"
 #include "pipeline/piece_fields.h"
 #include "pipeline/plot.h"
@@ -126,9 +127,8 @@ class StageRun {
         for (const std::string& note : machine_.notes) tell(note);
     }
 
-    bool moves_as_molded() const {
-        return in_motion(stage_.sim.solver) && &stage_ == &context_.scene.stage.front();
-    }
+    bool is_first() const { return &stage_ == &context_.scene.stage.front(); }
+    bool moves_as_molded() const { return in_motion(stage_.sim.solver) && is_first(); }
 
     void warn_of_start() {
         std::vector<std::string> told = tool_overlaps(machine_, named(bodies_), moves_as_molded());
@@ -137,6 +137,11 @@ class StageRun {
         for (std::string& one : boundary_notes(bodies_)) told.push_back(std::move(one));
         for (std::string& one : thin_pieces_notes(bodies_, stage_.sim)) {
             told.push_back(std::move(one));
+        }
+        // Of the first stage it has been told as the run began (start_doubts.h).
+        if (!is_first()) {
+            const std::string parted = parted_grips(stage_, machine_, bodies_.front().matter);
+            if (!parted.empty()) told.push_back(parted);
         }
         for (const std::string& one : told) warn(fmt::format("{}: {}", stage_.name, one));
     }

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "machines/machine.h"
+#include "pipeline/parted_grips.h"
 #include "pipeline/rest_doubt.h"
 #include "pipeline/slide_doubt.h"
 #include "pipeline/stage_machine.h"
@@ -118,12 +119,30 @@ std::string flight_doubt(const SceneSpec& scene, const Machine& machine,
         all, stage.duration, motion_left_out(scene));
 }
 
+// Of the first stage: what a later one finds is told as that begins.
+std::string parted_doubt(const SceneSpec& scene, const NamedMatter& work_piece) {
+    const StageSpec& stage = scene.stage.front();
+    // Coarser matter may part at a neck.
+    if (stage.machine.grip.size() < 2 || work_piece.coarser > 1) return {};
+    try {
+        const std::string parted =
+            parted_grips(stage, stage_machine(stage, *work_piece.matter, {}, work_piece.skin),
+                         *work_piece.matter);
+        return parted.empty() ? "" : stage.name + ": " + parted;
+    } catch (const Error&) {  // the stage tells that itself
+        return {};
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> doubts_of_start(const SceneSpec& scene,
                                          const std::vector<NamedMatter>& bodies) {
     std::vector<std::string> doubts;
     const Aggregate& matter = *bodies.front().matter;
+    if (std::string parted = parted_doubt(scene, bodies.front()); !parted.empty()) {
+        doubts.push_back(std::move(parted));
+    }
     for (const StageSpec& stage : scene.stage) {
         const MachineSpec& spec = stage.machine;
         const bool is_first = &stage == &scene.stage.front(), moves = in_motion(stage.sim.solver);
