@@ -6,6 +6,7 @@
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_numbered.h"
 #include "geometry/mesh_repair.h"
+#include "pipeline/bend_watch.h"
 #include "pipeline/run_record.h"
 #include "pipeline/use_watch.h"
 
@@ -95,6 +96,7 @@ std::string run_text(const std::string& folder, const Json& record) {
                               last < first ? "no frame is finished"
                                            : fmt::format("frames {} to {}", first, last),
                               within));
+        if (const std::string bent = bend_text(stage); !bent.empty()) lines.add(bent);
         for (const std::string& use : use_texts(stage)) lines.add(use);
     }
     for (const std::string& warning : warnings_in(record)) lines.add("warning", warning);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run.h"
+#include "pipeline/bend_watch.h"
 
 #include <algorithm>
 
@@ -204,6 +205,7 @@ class SceneRun {
 
     void tell_use() const {
         for (const Json& stage : record_.at("stages")) {
+            if (const std::string bent = bend_text(stage); !bent.empty()) log_info("{}", bent);
             for (const std::string& text : use_texts(stage)) log_info("{}", text);
         }
     }

@@ -9,6 +9,7 @@
 #include "base/bytes.h"
 #include "base/failure.h"
 #include "base/units.h"
+#include "pipeline/bend_watch.h"
 #include "pipeline/body_table.h"
 #include "pipeline/boundary_note.h"
 #include "pipeline/curves.h"
@@ -71,6 +72,7 @@ class StageRun {
           way_(stage, machine_, bodies.front().matter),
           limits_(stage, machine_),
           use_(bodies),
+          bend_(machine_, way_.now(), bodies.front().matter),
           cuts_(stage, machine_, way_, bodies, totals_, warnings_),
           meshes_(context.scene, stage, context.root) {
         const auto lap = context_.watch.lap("set up");
@@ -230,7 +232,7 @@ class StageRun {
     // What its frames change, beside the bodies and their simulation.
     template <typename Io>
     void visit(Io& io) {
-        io(before_, way_, limits_, use_, cuts_, first_, last_, totals_, warnings_, *curves_);
+        io(before_, way_, limits_, use_, bend_, cuts_, first_, last_, totals_, warnings_, *curves_);
         if (body_table_) io(*body_table_);
     }
 
@@ -284,6 +286,7 @@ class StageRun {
                     way_.go_on();
                 }
                 limits_.look(number, report, way_.goes_on_in(n));
+                bend_.look(number, way_.now(), bodies_.front().matter);
                 frame.go_on(std::move(report));
                 curves_->pass(frame.load);
             }
@@ -394,9 +397,13 @@ class StageRun {
                             stage_.name, way_.lost(), kMostLegs));
         }
         for (std::string& one : verdict.warning) warn(std::move(one));
+        if (const std::string told = bend_.warning(bodies_.front().matter); !told.empty()) {
+            warn(fmt::format("{}: {}", stage_.name, told));
+        }
         outcome_.steps = totals_.iterations + totals_.steps;
         outcome_.record = stage_record(end, *curves_, verdict.overlap, outcome_.warning);
         limits_.add_to(outcome_.record);
+        bend_.add_to(outcome_.record, bodies_.front().matter);
         outcome_.record["use"] = use_.json(bodies_);
         // Its row and the meshes are of the way to it.
         if (last_row() > end.last_frame) outcome_.record["unfinished_frame"] = last_row();
@@ -417,6 +424,7 @@ class StageRun {
     StageWay way_;
     LimitWatch limits_;
     UseWatch use_;
+    BendWatch bend_;
     StageTotals totals_;
     WarningBook warnings_;
     StageCuts cuts_;
