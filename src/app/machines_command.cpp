@@ -89,7 +89,7 @@ bool is_file(const MachinesArguments& given) { return given.name.ends_with(".tom
 // Of that file, or what a scene in `folder` can name.
 MachineCatalogue catalogue_for(const MachinesArguments& given, const AssetPaths& assets,
                                const fs::path& folder) {
-    if (!is_file(given)) return machine_catalogue(assets, folder);
+    if (!is_file(given)) return machine_catalogue(assets, folder, given.name);
     MachineReading reading = read_machine(given.name);
     MachineCatalogue one;
     one.mistakes = std::move(reading.mistakes);
@@ -111,7 +111,7 @@ int machines(const MachinesArguments& given) {
         if (bad.name != name && (!name.empty() || !catalogue.machine.empty())) continue;
         fail(ExitCode::scene, "{} does not make a usable machine", bad.file.string());
     }
-    if (catalogue.machine.empty()) {
+    if (catalogue.machine.empty() && known_machines(assets, folder).empty()) {
         fail(ExitCode::command_line,
              "found no machine in {}; use --assets to name the folder that contains machines/{}",
              names_text(machine_folders(assets, folder)), wrong_root_text(assets.root));

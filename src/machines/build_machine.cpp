@@ -10,6 +10,7 @@
 #include "geometry/mesh_read.h"
 #include "machines/blade_edge.h"
 #include "machines/bodies.h"
+#include "machines/ever_turns.h"
 #include "machines/load_name.h"
 #include "machines/parameters.h"
 #include "machines/repeat.h"
@@ -41,6 +42,7 @@ struct Setting {  // what every part of a machine is set up in
     bool coarser;                           // than those of what it stands for
     Variables known;                        // grows with each tool
     std::vector<Variables> known_beside{};  // to the bodies beside it: what differs
+    std::vector<std::string> finding{};     // in the meshes of tools
 
     Variables timed() const {  // what expressions that see t know beside it
         Variables all = known;
@@ -77,12 +79,17 @@ Vec3 length3(const Setting& setting, const Expression3& text) {
     return evaluate(text, setting.known, Quantity::length);
 }
 
-MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
+MeshShape scaled_mesh(Setting& setting, const ToolSpec& tool) {
+    std::vector<std::string> finding;
     auto mesh = std::make_shared<TriMesh>();
     try {
-        *mesh = read_mesh(tool.mesh, {}, nullptr, kCreaseAngle, false);  // it looks as its tool
+        *mesh = read_mesh(tool.mesh, {}, &finding, kCreaseAngle, false);  // it looks as its tool
     } catch (const Error& error) {
         throw PlacedError(tool.mesh_place, error.what(), error.code());
+    }
+    for (const std::string& one : finding) {
+        setting.finding.push_back(
+            fmt::format("tool {}: {}: {}", tool.name, tool.mesh.filename().string(), one));
     }
     const Box box = box_of(mesh->position);
     const double scale =
@@ -98,7 +105,7 @@ MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
     return {mesh, field};
 }
 
-Shape shape_of(const Setting& setting, const ToolSpec& tool) {
+Shape shape_of(Setting& setting, const ToolSpec& tool) {
     const auto length = [&](const Expression& text, const char* quantity) {
         return positive(setting, text, "tool " + tool.name, quantity);
     };
@@ -218,11 +225,11 @@ Box box_between(const Setting& setting, const Expression3& from, const Expressio
 }
 
 // Whether two grips hold along different axes all the way, as planes of symmetry that meet do.
-bool are_apart(const GripSpec& one, const GripSpec& other) {
+bool are_apart(const GripSpec& one, const Motion& own, const GripSpec& other, const Motion& its) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (one.along[axis] && other.along[axis]) return false;
     }
-    return one.motion.turn == "0" && other.motion.turn == "0";
+    return !ever_turns(own) && !ever_turns(its);
 }
 
 // `regions`: of the grips before it.
@@ -232,6 +239,7 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
     const Box region = box_between(setting, spec.from, spec.to);
     const Pose work_from_world = setting.frame.world_from_work.inverse();
     const Mat3 turn = work_from_world.rotation.toRotationMatrix();
+    Motion motion(spec.motion, setting.timed());
     Grip grip;
     grip.name = spec.name;
     Box jaws;
@@ -241,7 +249,7 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
         const double share = share_within(patch, region);
         if (share < kLeastShare) continue;
         for (std::size_t g = 0; g < regions.size(); ++g) {
-            if (are_apart(machine.spec.grip[g], spec)) continue;
+            if (are_apart(machine.spec.grip[g], machine.grip_motion[g], spec, motion)) continue;
             const Box both = {region.low.cwiseMax(regions[g].low),
                               region.high.cwiseMin(regions[g].high)};
             if (both.empty() || share_within(patch, both) <= kOverlap) continue;
@@ -272,7 +280,6 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
                                 kClampClearance * setting.spacing);
     }
 
-    Motion motion(spec.motion, setting.timed());
     const Pose start = pose_at(motion, "grip " + spec.name, 0);
     const double size = setting.frame.size.norm();
     if ((start * center - center).norm() > kAtRest * size ||
@@ -465,7 +472,10 @@ Machine set_up(const MachineSpec& given_spec, const std::map<std::string, double
     if (!spec.gravity_strength.empty()) {
         machine.gravity_strength.emplace(spec.gravity_strength, setting.timed(), Quantity::number);
     }
-    machine.notes = start_notes(machine, matter, setting.touch, setting.spacing);
+    machine.notes = setting.finding;
+    for (std::string& note : start_notes(machine, matter, setting.touch, setting.spacing)) {
+        machine.notes.push_back(std::move(note));
+    }
     for (const CheckSpec& check : spec.check) {
         if (evaluate(check.holds, setting.known) == 0) machine.notes.push_back(check.otherwise);
     }

@@ -6,8 +6,10 @@
 #include <map>
 
 #include "base/expression.h"
+#include "base/text.h"
 #include "base/text_error.h"
 #include "base/units.h"
+#include "machines/ever_turns.h"
 #include "machines/load_name.h"
 #include "machines/tool_clash.h"
 #include "machines/touch.h"
@@ -182,6 +184,33 @@ bool is_judged_as_read(const Expression& one, const std::vector<std::string>& kn
     }
 }
 
+// Of a grip that moves along axes which it does not hold: whatever is there slides by.
+std::string across_note(const Machine& machine, std::size_t n, const std::vector<Pose>& way,
+                        double slack) {
+    const Grip& grip = machine.apparatus.grip[n];
+    if (grip.hold == Vec3::Ones() || way.empty() || ever_turns(machine.grip_motion[n])) return "";
+    Vec3 most = Vec3::Zero();
+    for (const Pose& pose : way) most = most.cwiseMax(pose.translation.cwiseAbs());
+    std::vector<std::string> idle, held;
+    bool moves = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string name(1, "xyz"[axis]);
+        if (grip.hold[axis] != 0) {
+            held.push_back(name);
+            moves = moves || most[axis] > slack;
+        } else if (most[axis] > slack) {
+            idle.push_back(name);
+        }
+    }
+    if (idle.empty()) return "";
+    return fmt::format(
+        "grip {} holds along {} alone (along), and moves along {}: what it holds slides past it, "
+        "so "
+        "{}does nothing",
+        grip.name, joined(held, " and "), joined(idle, " and "),
+        moves ? "that part of its motion " : "its motion ");
+}
+
 // Of loads, and gravity, that come to nothing by what the work-piece or a parameter is.
 std::vector<std::string> nothing_notes(const Machine& machine) {
     const std::vector<LoadSpec>& spec = machine.spec.load;
@@ -273,6 +302,9 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
     }
     for (std::size_t n = 0; only_blades_move(machine.spec) && n < apparatus.blade.size(); ++n) {
         note(miss_note(machine, n, way_of(machine.blade_motion[n]), spacing));
+    }
+    for (std::size_t n = 0; n < apparatus.grip.size(); ++n) {
+        note(across_note(machine, n, way_of(machine.grip_motion[n]), slack));
     }
     for (const Load& load : apparatus.load) note(clamped_note(load, apparatus.grip));
     for (std::string& nothing : nothing_notes(machine)) note(std::move(nothing));

@@ -12,9 +12,11 @@
 namespace swage {
 
 MachineCatalogue machine_catalogue(const AssetPaths& assets,
-                                   const std::filesystem::path& scene_folder) {
+                                   const std::filesystem::path& scene_folder,
+                                   const std::string& only) {
     MachineCatalogue catalogue;
     for (const MachineFile& known : known_machines(assets, scene_folder)) {
+        if (!only.empty() && known.name != only) continue;
         MachineReading reading = read_machine(known.file);
         if (reading.machine) {
             catalogue.machine.push_back(std::move(*reading.machine));

@@ -18,9 +18,11 @@ struct MachineCatalogue {
     std::vector<MachineFile> unusable;  // no machine can be made of these
     std::vector<Mistake> mistakes;
 };
-// With a folder: also those in its machines/, which a scene there can name.
+// With a folder: also those in its machines/, which a scene there can name. `only`: that of this
+// name, if any; others are not read.
 MachineCatalogue machine_catalogue(const AssetPaths& assets,
-                                   const std::filesystem::path& scene_folder);
+                                   const std::filesystem::path& scene_folder,
+                                   const std::string& only = {});
 
 struct MaterialCatalogue {
     std::vector<Material> material;                    // in the order of the files

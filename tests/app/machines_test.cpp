@@ -35,6 +35,21 @@ TEST_CASE("a machine's parameters are told with the unit of a number that has no
     }
 }
 
+TEST_CASE("who asks for one machine is not told of the files of others") {
+    const Scratch scratch;
+    const std::string grip = "[[grip]]\nname = \"a\"\nfrom = [0, 0, 0]\nto = [1, 1, 1]\n";
+    fs::create_directories(scratch.path() / "machines");
+    put_text(scratch.path() / "machines" / "mine.toml", "help = \"tries\"\n" + grip);
+    put_text(scratch.path() / "machines" / "other.toml",
+             "help = \"tries\"\n[parameter.idle]\nquantity = \"number\"\ndefault = 3\n" + grip);
+    const Outcome mine = run_swage({"machines", "mine"}, scratch.path());
+    CHECK(mine.code == 0);
+    CHECK(mine.err.empty());
+    const std::string idle = "no expression uses the parameter \"idle\"";
+    CHECK(says(run_swage({"machines", "other"}, scratch.path()).err, idle));
+    CHECK(says(run_swage({"machines"}, scratch.path()).err, idle));
+}
+
 TEST_CASE("a machine is told in lines that fit, but for where its file is") {
     for (const char* name :
          {"bend", "cut", "floor", "hold", "press", "shelf", "slice", "stretch", "twist", "wring"}) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where tools stand, what they meet and what they turn about.
+#include <fstream>
+
 #include "base/error.h"
 #include "geometry/mesh_write.h"
 #include "machines/machine.h"
@@ -48,6 +50,24 @@ TEST_CASE("a mesh stands as a tool with its middle where the machine says, where
     CHECK((drive.world_from_tool[0].translation - Vec3(1, 2.3, 3)).norm() < 1e-9);
     CHECK(distance_to(machine.apparatus.tool[0].shape, Vec3(0, 0.1, 0)).value ==
           Approx(0).margin(1e-3));
+}
+
+TEST_CASE("what is odd in a tool's mesh is noted once, each time that its machine is set up") {
+    const Scratch scratch;
+    ToolSpec tool = ball();
+    tool.shape = ToolShape::mesh;
+    tool.mesh = scratch.path() / "odd.obj";
+    tool.length = "0.4*length";
+    write_obj(tool.mesh, box_mesh({Vec3(0, 0, 0), Vec3(8, 4, 1)}));
+    CHECK(with(tool, bar(0, {1, 2, 3})).notes.empty());
+    std::ofstream(tool.mesh, std::ios::app) << "\nf 1 1 2\nf 2 2 3\n";
+    for (int time = 0; time < 2; ++time) {
+        const std::vector<std::string> notes = with(tool, bar(0, {1, 2, 3})).notes;
+        REQUIRE(notes.size() == 1);
+        CHECK(notes[0] == "tool " + tool.name +
+                              ": odd.obj: 2 faces of fewer than three different corners were left "
+                              "out");
+    }
 }
 
 TEST_CASE("the axis of a turn is told in the frame of what turns, where that stands") {
