@@ -62,6 +62,7 @@ class ByteWriter {
         if (with_images_ && image_.insert(hash).second) (*this)(*image);
     }
     const std::string& bytes() const { return bytes_; }  // that no sink has taken
+    std::string take() { return std::exchange(bytes_, {}); }
 
   private:
     static constexpr std::size_t kPiece = 1 << 16;

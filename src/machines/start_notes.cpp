@@ -205,8 +205,7 @@ std::string across_note(const Machine& machine, std::size_t n, const std::vector
     if (idle.empty()) return "";
     return fmt::format(
         "grip {} holds along {} alone (along), and moves along {}: what it holds slides past it, "
-        "so "
-        "{}does nothing",
+        "so {}does nothing",
         grip.name, joined(held, " and "), joined(idle, " and "),
         moves ? "that part of its motion " : "its motion ");
 }

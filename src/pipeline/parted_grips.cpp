@@ -103,8 +103,7 @@ std::string parted_grips(const StageSpec& stage, const Machine& machine, const A
     }
     return fmt::format(
         "its grips hold separate pieces of the work-piece ({}): no matter joins these, so the "
-        "grips "
-        "move pieces and deform none{}",
+        "grips move pieces and deform none{}",
         joined(told, "; "),
         stage.sim.self_contact || in_motion(stage.sim.solver)
             ? ". Pieces that touch push and rub on each other, which joins nothing"

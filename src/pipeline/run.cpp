@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run.h"
-#include "pipeline/bend_watch.h"
 
 #include <algorithm>
 
 #include "base/failure.h"
 #include "base/log.h"
+#include "pipeline/bend_watch.h"
 #include "pipeline/cost.h"
 #include "pipeline/draw.h"
 #include "pipeline/frame_store.h"

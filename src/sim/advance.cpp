@@ -465,7 +465,7 @@ std::string Simulation::hand_on() const {
     ByteWriter out;
     BodyContact* const contact = rooms_->contact();
     if (contact != nullptr && contact->acts()) contact->hand_on(out);
-    return out.bytes();
+    return out.take();
 }
 
 void Simulation::take_on(std::string_view contacts, bool unpressed) {
