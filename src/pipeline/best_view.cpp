@@ -18,9 +18,13 @@ namespace {
 
 constexpr int kFrames = 12;    // of the film that are looked at, at most
 constexpr int kSamples = 400;  // of the skin in each
+constexpr int kEvery = 4;      // in so many of them what bodies hide of themselves counts too
 // Of the area that faces the camera where it stands: by which a view has to show more than that
 // and than those tried before it.
 constexpr double kClearly = 0.15;
+// Of the area that bodies do not hide of themselves where it stands, as much as a view has to show:
+// slices that stand in a row are seen from along it one by one.
+constexpr double kClear = 0.7;
 constexpr double kMuch = 0.5;  // of that area, hidden: it is told by what
 constexpr double kSome = 0.1;  // of that area, hidden by a part that is named
 constexpr double kDegree = kPi / 180;
@@ -37,6 +41,7 @@ struct Area {
 
 struct Sight {
     Area whole, worst;  // of the film, and of the half of it in which tools hide most
+    double clear = 0;   // area that no body hides, whatever tools do
 };
 
 // Evenly spread over the skin by area, as drawn.
@@ -92,6 +97,7 @@ class SampledFilm {
         if (!hides_) return;
         std::map<int, std::vector<Corners>> skin;
         const int shown = std::min(count_, kFrames);
+        const Pose turn{drawn_from_world, Vec3::Zero()};
         for (int n = 0; n < shown; ++n) {
             const int at = shown > 1 ? n * (count_ - 1) / (shown - 1) : 0;
             const StoredFrame stored = store.frame(at);
@@ -101,8 +107,9 @@ class SampledFilm {
                 if (is_new) known->second = store.skin(body.skin).triangle;
                 triangles.push_back(&known->second);
             }
-            Frame frame{at, stored.machine, {}, samples_of(stored, triangles, drawn_from_world)};
-            const Pose turn{drawn_from_world, Vec3::Zero()};
+            Frame frame{at, stored.machine, {}, samples_of(stored, triangles, drawn_from_world), {},
+                        {}};
+            if ((shown - 1 - n) % kEvery == 0) frame.bodies = together(stored, triangles, turn);
             for (const Pose& pose : stored.pose) {
                 frame.part_from_drawn.push_back((turn * pose).inverse());
             }
@@ -113,6 +120,7 @@ class SampledFilm {
 
     Sight from(const CameraPath& path, const std::vector<CameraKey>& keys) const {
         std::vector<Area> area(frame_.size());
+        Sight sight;
         for (std::size_t f = 0; f < frame_.size(); ++f) {
             const Vec3 eye = path.at(still_share(keys, frame_[f].at, count_)).eye;
             for (const SkinSample& sample : frame_[f].sample) {
@@ -120,11 +128,11 @@ class SampledFilm {
                 if (!(facing > 0)) continue;
                 area[f].facing += facing;
                 if (!is_hidden(frame_[f], sample.place, eye)) area[f].seen += facing;
+                if (is_clear(frame_[f], sample, eye)) sight.clear += facing;
             }
         }
         std::stable_sort(area.begin(), area.end(),
                          [](const Area& a, const Area& b) { return a.share() < b.share(); });
-        Sight sight;
         for (std::size_t f = 0; f < area.size(); ++f) {
             sight.whole += area[f];
             if (2 * f < area.size()) sight.worst += area[f];
@@ -167,7 +175,24 @@ class SampledFilm {
         int at, machine;
         std::vector<Pose> part_from_drawn;
         std::vector<SkinSample> sample;
+        TriMesh bodies;  // as drawn; empty where what they hide does not count
+        mutable std::optional<TriangleTree> tree;  // of these, once it is asked for
     };
+    static TriMesh together(const StoredFrame& frame,
+                            const std::vector<const std::vector<Corners>*>& triangles,
+                            const Pose& drawn_from_world) {
+        TriMesh all;
+        for (std::size_t b = 0; b < frame.body.size(); ++b) {
+            const int before = static_cast<int>(all.position.size());
+            for (const Vec3& p : frame.body[b].position) {
+                all.position.push_back(drawn_from_world * p);
+            }
+            for (const Corners& c : *triangles[b]) {
+                all.triangle.push_back({c[0] + before, c[1] + before, c[2] + before});
+            }
+        }
+        return all;
+    }
     // Parts between place and eye; of those only the first that is found, where one is enough.
     std::vector<const Part*> between(const Frame& frame, const Vec3& place, const Vec3& eye,
                                      bool one_is_enough = false) const {
@@ -183,6 +208,13 @@ class SampledFilm {
     }
     bool is_hidden(const Frame& frame, const Vec3& place, const Vec3& eye) const {
         return !between(frame, place, eye, true).empty();
+    }
+
+    static bool is_clear(const Frame& frame, const SkinSample& sample, const Vec3& eye) {
+        if (frame.bodies.triangle.empty()) return false;
+        if (!frame.tree) frame.tree.emplace(frame.bodies);
+        const double off = 1e-5 * (eye - sample.place).norm();
+        return !frame.tree->lies_between(sample.place + off * sample.normal, eye);
     }
 
     int count_;
@@ -253,7 +285,7 @@ ChosenView choose_view(const FrameStore& store, const RenderSettings& settings,
     double most = 0;
     for (const std::vector<CameraKey>& keys : candidates(settings)) {
         const Sight sight = sight_from(keys);
-        if (sight.whole.seen < before.whole.seen) continue;
+        if (sight.whole.seen < before.whole.seen || sight.clear < kClear * before.clear) continue;
         // Share and area: a sheet is not shown better from its edge, although nothing hides that,
         // nor is a bar from its broad side where nothing hides it at all.
         const double gain = std::min(sight.worst.share() - before.worst.share(),

@@ -23,8 +23,9 @@ struct ChosenView {
 };
 
 // A camera with angles open (see OpenAngles) stays where it stands, unless from lower, from
-// another side or both clearly more is seen, of the area and as its share. What tells is the run
-// and which tools are drawn: pictures of any size, lens and zoom have one view.
+// another side or both clearly more is seen, of the area and as its share, and bodies do not hide
+// much more of themselves. What tells is the run and which tools are drawn: pictures of any size,
+// lens and zoom have one view.
 ChosenView choose_view(const FrameStore& store, const RenderSettings& settings,
                        const ActionBox& action, const Quat& drawn_from_world);
 

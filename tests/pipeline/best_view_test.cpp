@@ -139,6 +139,25 @@ TEST_CASE("a sheet is not shown from its edge because a tool over it hides less 
     CHECK(shot.settings.camera.front().elevation == CameraKey().elevation);
 }
 
+TEST_CASE("slices that stand one behind the other are not shown along their row") {
+    // From there no tool hides any of their faces, but all but the first hide each other.
+    TriMesh slices;
+    for (int n = -3; n <= 3; ++n) {
+        const TriMesh one = box_mesh(Vec3(n - 0.1, -1, -1), Vec3(n + 0.1, 1, 1));
+        const int before = static_cast<int>(slices.position.size());
+        slices.position.insert(slices.position.end(), one.position.begin(), one.position.end());
+        for (const Corners& t : one.triangle) {
+            slices.triangle.push_back({t[0] + before, t[1] + before, t[2] + before});
+        }
+    }
+    // A screen that stands before the camera at first, and then goes up.
+    const TriMesh screen = box_mesh(Vec3(-3, -3, 2.5), Vec3(12, 8, 2.6));
+    const Film film(slices, screen, Vec3::Zero(), {0, 20, 0});
+    const double azimuth = chosen_for(film, open_settings(true, false)).azimuth;
+    CAPTURE(azimuth / kDegree);
+    CHECK(std::abs(std::sin(azimuth)) < 0.95);  // 1: along them
+}
+
 TEST_CASE("a run has one view, whatever the size, lens and zoom of its pictures and their up") {
     const Film film = pressed_box();
     const CameraKey usual = chosen_for(film, open_settings());
