@@ -238,9 +238,9 @@ Json with_whole_counts(Json cost) {
         const double value = in.at(key).get<double>();
         if (std::abs(value) < kMost) in[key] = std::llround(value);
     };
-    for (const char* key :
-         {"cells", "particles", "connections", "matter_bytes", "memory_bytes", "memory_bytes_most",
-          "disk_bytes_least", "disk_bytes", "steps", "steps_least", "steps_most"}) {
+    for (const char* key : {"cells", "particles", "connections", "matter_bytes", "memory_bytes",
+                            "memory_bytes_most", "memory_bytes_undrawn", "disk_bytes_least",
+                            "disk_bytes", "steps", "steps_least", "steps_most"}) {
         round(cost, key);
     }
     for (Json& body : cost.at("bodies")) round(body, "cells");

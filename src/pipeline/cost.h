@@ -43,6 +43,7 @@ struct RunCost {
     std::string hangs_on;             // what makes that more or less; empty: nothing much
     double memory_bytes = 0;          // at the peak, about
     double most_memory_bytes = 0;     // the same where all that may break goes to rubble
+    double undrawn_memory_bytes = 0;  // about, without pictures
     std::string less_memory;          // what to change for less: "a larger [mold] spacing"
     double disk_bytes = 0;            // of the run directory, when it holds the most, about
     double least_disk_bytes = 0;      // without what it keeps to go on from

@@ -2,6 +2,9 @@
 #include "pipeline/free_room.h"
 
 #include <sys/resource.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <limits>
@@ -31,6 +34,12 @@ double free_disk(fs::path folder) {
     // What is no disk (/proc, /sys) has no room that could be told: writing says why it cannot.
     return error || space.capacity == 0 ? std::numeric_limits<double>::infinity()
                                         : static_cast<double>(space.available);
+}
+
+void give_back_memory() {
+#if defined(__GLIBC__)
+    ::malloc_trim(0);
+#endif
 }
 
 void refuse_threads(int count) {

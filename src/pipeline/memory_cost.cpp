@@ -2,8 +2,14 @@
 #include "pipeline/memory_cost.h"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
 #include "pipeline/disk_cost.h"
+#include "render/image_read.h"
+#include "render/picture_bytes.h"
+#include "render/targets.h"
+#include "sim/contact_list.h"
 
 namespace swage {
 
@@ -35,9 +41,17 @@ constexpr double kInsetTriangle = 170, kCarriedVertex = 1080;
 // A cell's face at the surface: its points; what these have near, where there are tools or bodies
 // (the animals and the bars).
 constexpr double kFace = 2700, kTouchingFace = 2500;
-// Libraries that draw, and of each pixel their buffers (that bar drawn, 1280 x 720).
-constexpr double kDrawing = 117e6, kPixel = 60;
-constexpr double kDrawnVertex = 500;
+// Of what is cut each point of the surface has cells of its own body near, in one place or two: so
+// it is looked whether pieces overlap at the end. Each place, and what is found of it (a flower
+// from a sheet of dough, 46,000 points: 81 MB).
+constexpr double kPointsPerFace = 4, kOwnPlaces = 1.5;
+constexpr double kOwnContact = sizeof(Contact) + sizeof(ContactMemory) + 830;
+// Libraries that draw, shaders as they are compiled and maps of shadows (stills of 64 x 64 pixels);
+// those for passes more.
+constexpr double kDrawing = 114e6, kPassShaders = 6e6;
+// Of what is drawn, a vertex of a skin as it came, of one that a still shows, and of the one before
+// it where it is another.
+constexpr double kGivenVertex = 150, kDrawnVertex = 500, kMovedVertex = 200;
 
 constexpr const char* kLargerCells = "a larger [mold] spacing";
 
@@ -46,6 +60,10 @@ struct MemoryPart {
     const char* less;
     double bytes;
 };
+
+double own_contacts(const MemoryShare& of) {
+    return kOwnContact * kOwnPlaces * kPointsPerFace * (of.faces + of.cut_faces);
+}
 
 const MemoryPart& largest(const std::vector<MemoryPart>& parts) {
     return *std::max_element(
@@ -61,6 +79,23 @@ const char* fewer_vertices(const SceneSpec& scene, const std::vector<InputMesh>&
     return scene.skin.kind != SkinKind::boundary && given > 0.5 * vertices
                ? "a mesh of fewer triangles"
                : kLargerCells;
+}
+
+// Of the meshes, each picture as often as there are materials with it at the most.
+TextureBytes textures(const std::vector<InputMesh>& input) {
+    TextureBytes all;
+    for (const InputMesh& one : input) {
+        for (const SurfaceMaterial& material : one.mesh.material) {
+            const auto size = material.embedded_texture   ? picture_size(*material.embedded_texture)
+                              : !material.texture.empty() ? picture_size(material.texture)
+                                                          : std::nullopt;
+            if (!size) continue;
+            const TextureBytes bytes = texture_bytes(size->front(), size->back());
+            all.kept += bytes.kept;
+            all.reading = std::max(all.reading, bytes.reading);
+        }
+    }
+    return all;
 }
 
 }  // namespace
@@ -89,10 +124,23 @@ MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& i
                               : kMountedVertex + (scene.any_stage(cuts) ? kCutVertex : 0);
     const double simulated = of.matter + of.particles * particle + of.faces * face +
                              of.vertices * vertex + of.carried_vertices * kCarriedVertex + of.way +
-                             kKept;
-    const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
+                             kKept + (scene.any_stage(cuts) ? own_contacts(of) : 0);
+    const auto pixels = [&](double vertices) {
+        return picture_bytes(scene.render, 2 * vertices <= double(kMostMultisampledTriangles));
+    };
+    const TextureBytes texture = draws ? textures(input) : TextureBytes();
+    const double given =
+        std::accumulate(input.begin(), input.end(), 0.0, [](double sum, const InputMesh& one) {
+            return sum + kGivenVertex * static_cast<double>(one.mesh.position.size());
+        });
+    // Those of two pictures are kept, where skins are other ones in each.
+    const double pictures = scene.breaks() || scene.any_stage(cuts) ? 3 : 1;
+    const double each =
+        pictures * kDrawnVertex + (scene.render.has(PicturePass::motion) ? 2 * kMovedVertex : 0);
     const auto drawn = [&](double vertices) {
-        return draws ? kDrawing + kPixel * pixels + vertices * kDrawnVertex : 0;
+        if (!draws) return 0.0;
+        return kDrawing + (scene.render.passes.empty() ? 0 : kPassShaders) + texture.kept +
+               std::max(texture.reading, given + pixels(vertices) + vertices * each);
     };
     const auto peak = [&](double broken, double vertices) {
         return held + std::max({read, simulated + broken, drawn(vertices)});
@@ -101,8 +149,9 @@ MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& i
     const auto less = [&](double broken) {
         const double skins = of.vertices * vertex;
         if (drawn(of.vertices) > std::max(read, simulated + broken)) {
-            return largest({{"a smaller [render] size", kPixel * pixels},
-                            {of_skins, of.vertices * kDrawnVertex}})
+            return largest({{"a smaller [render] size", pixels(of.vertices)},
+                            {"smaller textures", texture.kept + texture.reading},
+                            {of_skins, of.vertices * each}})
                 .less;
         }
         if (read > simulated + broken) return "a mesh of fewer triangles";
@@ -111,14 +160,15 @@ MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& i
                         {"fewer frames", of.way}})
             .less;
     };
-    if (!scene.breaks()) return {peak(0, of.vertices), peak(0, of.vertices), less(0)};
+    const double undrawn = held + std::max(read, simulated);
+    if (!scene.breaks()) return {peak(0, of.vertices), peak(0, of.vertices), undrawn, less(0)};
     const bool is_boundary = scene.skin.kind == SkinKind::boundary;
     const double rubble = broken_vertices(scene, of.particles, of.vertices, of.faces),
                  about = of.cells * kBroken,
                  most = of.particles * kRubble +
                         rubble * (is_boundary ? kBoundaryVertex : kRubbleVertex);
     return {peak(about, of.vertices), peak(std::max(about, most), of.vertices + rubble),
-            less(about)};
+            undrawn + about, less(about)};
 }
 
 }  // namespace swage

@@ -15,9 +15,10 @@ namespace swage {
 struct MemoryShare {
     double matter = 0;  // [byte]
     double particles = 0, cells = 0;
-    double faces = 0;     // of cells, that its surface is as large as
-    double vertices = 0;  // of skins
-    double way = 0;       // [byte], of machines
+    double faces = 0;      // of cells, that its surface is as large as
+    double cut_faces = 0;  // of cells, that blades lay open
+    double vertices = 0;   // of skins
+    double way = 0;        // [byte], of machines
     double inset_triangles = 0;
     double carried_vertices = 0;  // of insets that go on with the matter
 };
@@ -25,6 +26,7 @@ struct MemoryShare {
 struct MemoryBytes {
     double about = 0;
     double most = 0;        // where all that may break is broken to its particles; else the same
+    double undrawn = 0;     // about, of the simulation alone
     std::string less = {};  // what would take off the most of it: "a larger [mold] spacing"
 };
 

@@ -9,6 +9,7 @@
 #include "pipeline/cost.h"
 #include "pipeline/draw.h"
 #include "pipeline/frame_store.h"
+#include "pipeline/free_room.h"
 #include "pipeline/kept_run.h"
 #include "pipeline/run_record.h"
 #include "pipeline/scene_identity.h"
@@ -197,6 +198,7 @@ class SceneRun {
     void draw() {
         if (!is_simulated_) draw_plots();
         if (!options_.draw || wanted_.first > reached()) return;
+        give_back_memory();
         const FrameStore store(directory_.store());
         const FrameRange drawn{wanted_.first, std::min(wanted_.last, reached())};
         record_["drawing"] = drawing_json(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one file that sees stb: pictures in, and the letters of pictures.
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -135,6 +136,21 @@ Image decode_image(const std::string& bytes, const std::string& name, int larges
         name, largest_side,
         [&](int* w, int* h, int* n) { return stbi_info_from_memory(data, size, w, h, n); },
         [&](int* w, int* h, int* n) { return stbi_load_from_memory(data, size, w, h, n, 3); });
+}
+
+std::optional<std::array<int, 2>> picture_size(const std::filesystem::path& file) {
+    const std::optional<std::string> bytes = file_contents(file, kLargestFile);
+    return bytes ? picture_size(*bytes) : std::nullopt;
+}
+
+std::optional<std::array<int, 2>> picture_size(const std::string& bytes) {
+    if (bytes.size() > kLargestFile) return std::nullopt;
+    std::array<int, 2> size{};
+    int channels = 0;
+    const int known = stbi_info_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
+                                            static_cast<int>(bytes.size()), size.data(),
+                                            size.data() + 1, &channels);
+    return known == 0 ? std::nullopt : std::optional(size);
 }
 
 namespace {

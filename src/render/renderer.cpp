@@ -19,12 +19,6 @@ namespace swage {
 
 namespace {
 
-constexpr int kSamples = 4;
-// Above this, multisampling so many small triangles takes a third of a picture's time, and the eye
-// hardly tells: edges are softened afterwards instead.
-constexpr std::size_t kMostMultisampledTriangles = 60'000;
-constexpr long kMostMultisampledPixels = 4096l * 4096l;
-
 // Of the light on what tells numbers by its colours, the share that is the same everywhere.
 constexpr float kEvened = 0.65f;
 

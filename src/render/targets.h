@@ -10,6 +10,12 @@
 
 namespace swage {
 
+inline constexpr int kSamples = 4;  // of a pixel
+// Above this, multisampling so many small triangles takes a third of a picture's time, and the eye
+// hardly tells: edges are softened afterwards instead.
+inline constexpr std::size_t kMostMultisampledTriangles = 60'000;
+inline constexpr long kMostMultisampledPixels = 4096l * 4096l;
+
 // A framebuffer with a colour texture, a depth buffer, or both.
 struct Target {
     GlHandle framebuffer, color, depth;

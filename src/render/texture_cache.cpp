@@ -13,9 +13,6 @@ namespace swage {
 
 namespace {
 
-// Larger pictures are shrunk to this; on a still of common size nothing is lost.
-constexpr int kLargestSide = 4096;
-
 GlHandle uploaded(const Gl& gl, const Image& image) {
     // A texture's first row is the lowest.
     const std::size_t stride = 3 * static_cast<std::size_t>(image.width);
@@ -57,7 +54,7 @@ GlHandle TextureCache::loaded(const SurfaceMaterial& material) const {
                 ? decode_image(*material.embedded_texture,
                                "the picture inside material \"" + material.name + "\"")
                 : read_image(material.texture);
-        return uploaded(*gl_, thumbnail(image, kLargestSide, kLargestSide));
+        return uploaded(*gl_, thumbnail(image, kLargestTextureSide, kLargestTextureSide));
     } catch (const Error& error) {
         log_warning("{}; the surface is drawn in its plain colour", error.what());
         return {};

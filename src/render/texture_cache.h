@@ -12,6 +12,9 @@
 
 namespace swage {
 
+// Larger pictures are shrunk to this; on a still of common size nothing is lost.
+inline constexpr int kLargestTextureSide = 4096;
+
 class TextureCache {
   public:
     explicit TextureCache(const Gl& gl) : gl_(&gl) {}
