@@ -42,6 +42,9 @@ TEST_CASE("the steps that a run takes lie in the range that check tells", "[stre
         holds("twist\"\nangle = \"20 deg\"\n", of);
     }
     holds("bend\"\nangle = \"5 deg\"\n", ice);
+    for (const char* cuts : {"cut", "carve", "slice"}) {
+        holds(std::string(cuts) + "\"\n", rubber);
+    }
     const std::string floor = "floor\"\ngravity = 9.81\nduration = \"4 ms\"\ndrop = \"0.1 mm\"\n";
     holds(floor, rubber);
     holds(floor, clay);

@@ -158,7 +158,8 @@ TEST_CASE("the same scene is told the same, and never longer with another thread
     set_thread_count(before);
 }
 
-TEST_CASE("thin and incompressible plates that may bend are told more at the most than stout ones") {
+TEST_CASE(
+    "thin and incompressible plates that may bend are told more at the most than stout ones") {
     const auto iterations = [](const char* shape, double poisson_ratio, bool tools) {
         Work work(Solver::quasistatic, tools);
         work.input.mesh = make_shape(shape, {}).mesh;
@@ -179,4 +180,69 @@ TEST_CASE("thin and incompressible plates that may bend are told more at the mos
         CHECK(iterations("bar", 0.49, tools).most > 2 * bar.most);
         CHECK(iterations("bar", 0.3, tools).most == bar.most);
     }
+}
+
+TEST_CASE(
+    "what blades cut is told the few iterations that it takes where nothing else strains it") {
+    const auto told = [](auto change) {
+        Work work(Solver::quasistatic);
+        work.scene.stage[0].machine.blade.resize(1);
+        change(work.scene);
+        RunOptions options;
+        options.draw = false;
+        const CostRange steps = estimate_cost(work.scene, {work.input}, options).steps;
+        return steps.times(1.0 / frame_count(work.scene));
+    };
+    const CostRange cut = told([](SceneSpec&) {});
+    CHECK(cut.least > 5);
+    CHECK(cut.most < 50);
+    // Grips that draw away what is cut change nothing; what turns, presses, pulls or breaks may.
+    const CostRange parted = told([](SceneSpec& scene) {
+        GripSpec grip;
+        grip.motion.move[0] = "t";
+        scene.stage[0].machine.grip.push_back(grip);
+    });
+    CHECK(parted.most == cut.most);
+    const auto may_take_more = [&](auto change) {
+        const CostRange more = told(change);
+        CHECK(more.most > 20 * cut.most);
+        CHECK(more.least <= cut.least);
+    };
+    may_take_more([](SceneSpec& scene) {
+        GripSpec grip;
+        grip.motion.turn = "t";
+        scene.stage[0].machine.grip.push_back(grip);
+    });
+    may_take_more([](SceneSpec& scene) { scene.stage[0].machine.tool.resize(1); });
+    may_take_more([](SceneSpec& scene) { scene.stage[0].machine.load.resize(1); });
+    may_take_more([](SceneSpec& scene) { scene.stage[0].sim.gravity = {0, -9.81, 0}; });
+    may_take_more([](SceneSpec& scene) { scene.stage[0].sim.self_contact = true; });
+    may_take_more([](SceneSpec& scene) { scene.body[0].material.strength = 1e6; });
+    // What was strained before goes on to be.
+    const CostRange later = told([](SceneSpec& scene) {
+        scene.stage.insert(scene.stage.begin(), scene.stage.front());
+        scene.stage[0].machine.blade.clear();
+        scene.stage[0].machine.tool.resize(1);
+    });
+    CHECK(later.most > 20 * cut.most);
+}
+
+TEST_CASE("passes are told to take their time, all of them twice that of the stills alone") {
+    RenderSettings render;
+    render.width = 3840;
+    render.height = 2160;
+    const double stills = drawing_time(render, 10);
+    const auto with = [&](std::vector<PicturePass> passes) {
+        render.passes = std::move(passes);
+        return drawing_time(render, 10);
+    };
+    using enum PicturePass;
+    double longest = 0;
+    for (const PicturePass one : {depth, matte, normal, motion, beauty, piece}) {
+        CHECK(with({one}) > 1.1 * stills);
+        longest = std::max(longest, with({one}));
+    }
+    const double all = with({depth, matte, normal, motion, beauty, piece});
+    CHECK(all > longest);
+    CHECK(all / stills == Approx(8.4 / 2.5).epsilon(0.15));
 }
