@@ -100,17 +100,6 @@ void add_insets(const SceneSpec& scene, const std::vector<std::vector<TriMesh>>&
     }
 }
 
-// Faces of cells on both sides of what blades cut of the work-piece: each about as much as a plane
-// through a cube of its volume would.
-double cut_faces(const SceneSpec& scene, const InputMesh& input, double spacing) {
-    double blades = 0;
-    for (const StageSpec& stage : scene.stage) {
-        blades += static_cast<double>(stage.machine.blade.size());
-    }
-    const double volume = std::abs(signed_volume(input.to_mold()));
-    return 2 * blades * portable::pow(volume, 2. / 3) / (spacing * spacing);
-}
-
 // Of the body with the shortest stable step. `counted`: or null.
 double steps_per_second(const SceneSpec& scene, const RunCost& cost, const CountedMatter* counted,
                         const StageSpec& stage) {
@@ -232,7 +221,7 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
                          cost.mold.particles,
                          cost.mold.active_cells,
                          load.surface_points / kPointsPerFace,
-                         cut_faces(scene, input[0], cost.work_piece().spacing),
+                         cut_faces(scene, input[0].to_mold(), cost.work_piece().spacing),
                          vertices,
                          way};
     if (counted != nullptr) add_insets(scene, counted->inset, cost.work_piece().spacing, share);

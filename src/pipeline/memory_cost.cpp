@@ -2,9 +2,12 @@
 #include "pipeline/memory_cost.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
+#include <set>
 
+#include "base/portable_math.h"
 #include "pipeline/disk_cost.h"
 #include "render/image_read.h"
 #include "render/picture_bytes.h"
@@ -99,6 +102,23 @@ TextureBytes textures(const std::vector<InputMesh>& input) {
 }
 
 }  // namespace
+
+// Those of one name cut across the length, those of several in all directions.
+double cut_faces(const SceneSpec& scene, const TriMesh& mesh, double spacing) {
+    const double volume = std::abs(signed_volume(mesh));
+    const double across = volume / box_of(mesh.position).size().maxCoeff(),
+                 any = portable::pow(volume, 2. / 3);
+    double area = 0;
+    for (const StageSpec& stage : scene.stage) {
+        std::set<std::string> names;
+        for (const BladeSpec& blade : stage.machine.blade) {
+            names.insert(blade.repeat.name.empty() ? blade.name : blade.repeat.name);
+        }
+        const auto blades = static_cast<double>(stage.machine.blade.size());
+        area += blades * (names.size() > 1 ? any : across);
+    }
+    return 2 * area / (spacing * spacing);
+}
 
 MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
                          const MemoryShare& of, bool draws) {

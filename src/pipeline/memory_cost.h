@@ -30,6 +30,9 @@ struct MemoryBytes {
     std::string less = {};  // what would take off the most of it: "a larger [mold] spacing"
 };
 
+// Of cells, on both sides of what all blades cut of the work-piece, about.
+double cut_faces(const SceneSpec& scene, const TriMesh& mesh, double spacing);
+
 // `draws`: stills too, once it is simulated.
 MemoryBytes memory_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
                          const MemoryShare& of, bool draws);

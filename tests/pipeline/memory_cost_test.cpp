@@ -94,4 +94,16 @@ TEST_CASE("what is cut is told with the places where its surface may meet itself
     CHECK(memory(9) - memory(1) == Approx(8 * (memory(2) - memory(1))));
     CHECK(memory(1) - memory(0) > 4 * (6 + 2) * faces * 0.9 * place);
     CHECK(memory(2, 0.01) - memory(1, 0.01) == Approx(memory(2) - memory(1)));
+    // Of a bar across its length, of blades of several names in any direction.
+    DrawnScene bar("bar", {});
+    const auto faces_of = [&](const std::vector<std::string>& names) {
+        bar.scene.stage[0].machine.blade.clear();
+        for (const std::string& name : names) {
+            bar.scene.stage[0].machine.blade.emplace_back().name = name;
+        }
+        return cut_faces(bar.scene, box_mesh(Vec3::Zero(), Vec3(8, 1, 1)), 0.5);
+    };
+    CHECK(faces_of({}) == 0);
+    CHECK(faces_of({"blade"}) == Approx(2 * 4));
+    CHECK(faces_of({"across", "along"}) == Approx(2 * 2 * 4 * 4));
 }
