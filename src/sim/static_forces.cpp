@@ -62,6 +62,10 @@ void StaticForces::connections_changed() {
 
 void StaticForces::find_bounds() {
     find_bound();
+    find_drag();
+}
+
+void StaticForces::find_drag() {
     const double a = matter.lattice.spacing;
     const double full_mass = matter.material.density * a * a * a;
     drag.resize(matter.particle_count());

@@ -86,10 +86,12 @@ struct StaticForces {
         lattice.visit(io, matter);
         io(contacts, pushes, self, free, measure, stiffness_bound, hold, held, force, mirrored,
            least_left_);
+        if constexpr (Io::kReads) find_drag();  // by the masses, which a blade may have changed
     }
 
   private:
     void find_bounds();
+    void find_drag();
 
     double tolerance_;
     double least_left_ = 0;  // what rounding leaves over, whatever is done [N]

@@ -106,7 +106,7 @@ TEST_CASE("the number of a piece is that of its object, of however many shells i
     const std::string wide = "blade_width = \"60 cm\"\n";
     const std::vector<Line> lines = {
         {"cut twice", bar, "", {cut_at(-.1), cut_at(.2)}, {"2-cut"}, {{1, 1, 1}, {1, 2, 4}}},
-        {"stud", stud, "", {cut_at(0)}, {"1-cut"}, {{1, 2}, {1, 2}}},
+        {"stud", stud, "", {cut_at(0)}, {"1-cut"}, {{2, 1}, {1, 2}}},  // its half weighs more
         {"stud on what is cut again",
          stud,
          "",
