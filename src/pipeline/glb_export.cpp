@@ -12,6 +12,7 @@
 #include "base/portable_math.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "geometry/frame_changes.h"
 #include "geometry/picture_kind.h"
 #include "pipeline/free_room.h"
 #include "pipeline/glb_skin.h"
@@ -109,52 +110,37 @@ class GlbExporter {
             {{"input", glb_.add_times(times)}, {"output", output}, {"interpolation", between}});
     }
 
+    // Something of so many numbers that the frames from the first on have.
+    template <int kWidth>
+    void animate(std::size_t node, const char* path, Between between, int first,
+                 const std::vector<Eigen::Matrix<float, kWidth, 1>>& of_frame) {
+        const std::vector<int> frame = changes(of_frame, first, between);
+        if (frame.size() < 2) return;
+        std::vector<float> value;
+        for (const int f : frame) {
+            const auto& now = of_frame[std::size_t(f - first)];
+            value.insert(value.end(), now.begin(), now.end());
+        }
+        animate(node, path, between == Between::held ? "STEP" : "LINEAR", frame,
+                glb_.add_numbers(value, kWidth));
+    }
+
     // Readers know no other way to hide something for a while than to make it nothing.
     void show(std::size_t of, const std::vector<char>& is_seen) {
-        std::vector<int> frame;
-        std::vector<float> scale;
-        for (std::size_t f = 0; f < is_seen.size(); ++f) {
-            if (f > 0 && is_seen[f] == is_seen[f - 1]) continue;
-            frame.push_back(frames_.first + static_cast<int>(f));
-            scale.insert(scale.end(), 3, is_seen[f] ? 1.0f : 0.0f);
-        }
+        std::vector<Eigen::Vector3f> scale;
+        for (const char seen : is_seen) scale.push_back(Eigen::Vector3f::Constant(seen ? 1 : 0));
         if (!is_seen[0]) node(of)["scale"] = {0, 0, 0};
-        if (frame.size() > 1) animate(of, "scale", "STEP", frame, glb_.add_numbers(scale, 3));
+        animate(of, "scale", Between::held, frames_.first, scale);
     }
 
     void move(std::size_t of, int first, const std::vector<Pose>& pose) {
-        std::vector<int> placed, turned;
-        std::vector<float> place, turn;
-        Eigen::Vector3f last_place;
-        Eigen::Vector4f last_turn;
-        for (std::size_t f = 0; f < pose.size(); ++f) {
-            const int frame = first + static_cast<int>(f);
-            const Eigen::Vector3f at = pose[f].translation.cast<float>();
-            Eigen::Vector4f q = pose[f].rotation.normalized().coeffs().cast<float>();
-            // Between two of them readers go the shorter way, of signs that differ not all do.
-            if (f > 0 && q.dot(last_turn) < 0) q = -q;
-            const auto keep = [&](std::vector<int>& frames, std::vector<float>& values,
-                                  const auto& last, const auto& now) {
-                if (f > 0 && now == last) return;
-                if (f > 0 && frames.back() < frame - 1) {  // until then it stays
-                    frames.push_back(frame - 1);
-                    values.insert(values.end(), last.begin(), last.end());
-                }
-                frames.push_back(frame);
-                values.insert(values.end(), now.begin(), now.end());
-            };
-            keep(placed, place, last_place, at);
-            keep(turned, turn, last_turn, q);
-            last_place = at, last_turn = q;
-        }
-        node(of)["translation"] = std::vector<float>(place.begin(), place.begin() + 3);
-        node(of)["rotation"] = std::vector<float>(turn.begin(), turn.begin() + 4);
-        if (placed.size() > 1) {
-            animate(of, "translation", "LINEAR", placed, glb_.add_numbers(place, 3));
-        }
-        if (turned.size() > 1) {
-            animate(of, "rotation", "LINEAR", turned, glb_.add_numbers(turn, 4));
-        }
+        std::vector<Eigen::Vector3f> place;
+        for (const Pose& now : pose) place.push_back(now.translation.cast<float>());
+        const std::vector<Eigen::Vector4f> turn = steady_turns(pose);
+        node(of)["translation"] = std::vector<float>(place[0].begin(), place[0].end());
+        node(of)["rotation"] = std::vector<float>(turn[0].begin(), turn[0].end());
+        animate(of, "translation", Between::straight, first, place);
+        animate(of, "rotation", Between::straight, first, turn);
     }
 
     GlbSurface surface_of(int skin) {

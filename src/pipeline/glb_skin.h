@@ -39,7 +39,7 @@ class GlbSurface {
     std::vector<std::vector<std::uint32_t>> corner_;  // by look, three a triangle
 };
 
-// Of vectors of three, as single floats, of which the first ones' differ.
+// Of places as single floats, by axis.
 struct GlbBounds {
     std::vector<float> low, high;
 };

@@ -46,9 +46,9 @@ class BlockSolver {
     // Is given up when the guard finds something wrong even in the shortest steps; the matter is
     // then as it was at the last block that was right.
     MoveOutcome advance(const Drive& from, const Drive& to);
+    void masses_changed(std::size_t body, const std::vector<double>& was);  // as MovingBody's
     // A blade has severed connections of this body. Returns what contacts with tools and grips held
     // by what is gone [J]; with other bodies that counts as damped in the next move.
-    void masses_changed(std::size_t body, const std::vector<double>& was);  // as MovingBody's
     double connections_changed(std::size_t body, const Drive& now);
     double elastic_energy(std::size_t body) { return bodies_[body].elastic_energy(); }  // [J]
     const LoadSet& pushes(std::size_t body) const { return bodies_[body].pushes(); }

@@ -30,10 +30,10 @@ class QuasistaticSolver {
     // before that increment.
     MoveOutcome advance(const Drive& from, const Drive& to, const DriveAt& way = {});
 
-    // A blade has severed connections. Returns what contacts and grips held by what is gone [J].
     void masses_changed(std::size_t, const std::vector<double>& was) {  // as LoadSet's
         forces_.pushes.masses_changed(matter_, was);
     }
+    // A blade has severed connections. Returns what contacts and grips held by what is gone [J].
     double connections_changed(std::size_t body, const Drive& now);
     double elastic_energy(std::size_t = 0) { return forces_.elastic_energy(); }  // [J]
     const LoadSet& pushes(std::size_t = 0) const { return forces_.pushes; }

@@ -7,6 +7,7 @@
 #include "geometry/box_mesh.h"
 #include "pipeline/shot.h"
 #include "tests/pipeline/glb.h"
+#include "tests/pipeline/pyramid.h"
 #include "tests/shared/bytes_of.h"
 #include "tests/shared/scratch.h"
 
@@ -21,32 +22,6 @@ constexpr int kFrames = 8, kCut = 5, kSecond = 4;  // first frames of another sk
 constexpr double kRate = 24;
 
 double time_of(int frame) { return (frame - 1) / kRate; }
-
-TriMesh pyramid(const fs::path& texture) {
-    TriMesh mesh;
-    mesh.position = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.1, 0.2, 1.0 / 3}};
-    mesh.triangle = {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}};
-    mesh.uv = {{0.5, 0}, {1, 0.25}};
-    mesh.triangle_uv = {{0, 1, 1}, {0, 1, 1}, {0, 1, 0}, {0, 1, 1}};
-    mesh.triangle_material = {0, 0, 0, 0};
-    mesh.material.resize(1);
-    mesh.material[0].name = "hide";
-    mesh.material[0].texture = texture;
-    smooth_by_crease_angle(mesh);
-    return mesh;
-}
-
-// Closed, by a face of a cut.
-TriMesh cut_pyramid(const fs::path& texture) {
-    TriMesh mesh = pyramid(texture);
-    mesh.triangle.push_back({2, 3, 4});
-    mesh.triangle_uv.push_back({-1, -1, -1});
-    mesh.triangle_material.push_back(1);
-    mesh.material.push_back({"cut", {0.5, 0.25, 1}});
-    mesh.material.back().clear = 0.75;
-    smooth_by_crease_angle(mesh);
-    return mesh;
-}
 
 TriMesh colored() {
     TriMesh mesh = box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1));
@@ -70,7 +45,8 @@ struct Motion {
         scene.stage = {{"1-bend", kSecond - 1}, {"2-drop", kFrames}};
         const fs::path texture = scratch.path() / "spots.png";
         std::ofstream(texture) << "\x89PNG of spots";
-        skin = {pyramid(texture), cut_pyramid(texture), colored()};
+        const TriMesh whole = test::pyramid(texture);
+        skin = {whole, test::with_cut(whole), colored()};
         FrameStoreWriter writer(store());
         for (const TriMesh& one : skin) writer.add_skin(one);
         writer.add_machine({{"post", tool, {0.25, 0.5, 0.75}}});

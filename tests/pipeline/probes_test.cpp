@@ -30,6 +30,16 @@ Vec3 in_bar(const Vec3& share) {
     return Vec3(-0.2, -0.05, -0.1) + share.cwiseProduct(Vec3(0.4, 0.1, 0.2));
 }
 
+// What lies beyond that place along x is parted and goes by what is returned.
+Vec3 draw_apart(Aggregate& matter, double cut) {
+    test::sever_plane(matter, {cut, 0, 0}, Vec3::UnitX());
+    const Vec3 apart(0.3, 0, 0);
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        if (matter.particle_reference.at(p).x() > cut) matter.particle_position.add(p, apart);
+    }
+    return apart;
+}
+
 }  // namespace
 
 TEST_CASE("a probe follows the matter exactly where that turns, moves and is drawn evenly") {
@@ -84,13 +94,7 @@ TEST_CASE("a probe in a cell that is parted goes with its own side") {
     for (int n : {0, 1}) body.probe[n].at.x() += cut / 0.4;
     piece = bar(body, SkinKind::mount);
     const std::vector<ProbePlace> before = probe_places({body}, {piece});
-    test::sever_plane(piece.matter, {cut, 0, 0}, Vec3::UnitX());
-    const Vec3 apart(0.3, 0, 0);
-    for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
-        if (piece.matter.particle_reference.at(p).x() > cut) {
-            piece.matter.particle_position.add(p, apart);
-        }
-    }
+    const Vec3 apart = draw_apart(piece.matter, cut);
     const std::vector<ProbePlace> after = probe_places({body}, {piece});
     CHECK((after[0].place - before[0].place).norm() < 1e-12);
     CHECK((after[1].place - before[1].place - apart).norm() < 1e-12);
@@ -112,13 +116,7 @@ TEST_CASE(
     const std::vector<ProbePlace> before = probe_places({body}, {piece});
     cut_skins(piece, {{Vec3(cut, -1, -1), Vec3(cut, 1, -1), Vec3(cut, 1, 1)},
                       {Vec3(cut, -1, -1), Vec3(cut, 1, 1), Vec3(cut, -1, 1)}});
-    test::sever_plane(piece.matter, {cut, 0, 0}, Vec3::UnitX());
-    const Vec3 apart(0.3, 0, 0);
-    for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
-        if (piece.matter.particle_reference.at(p).x() > cut) {
-            piece.matter.particle_position.add(p, apart);
-        }
-    }
+    const Vec3 apart = draw_apart(piece.matter, cut);
     const std::vector<ProbePlace> after = probe_places({body}, {piece});
     CHECK((after[0].place - before[0].place).norm() < 1e-12);
     CHECK((after[1].place - before[1].place - apart).norm() < 1e-12);

@@ -10,6 +10,7 @@
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_looks.h"
 #include "tests/catch.h"
+#include "tests/pipeline/pyramid.h"
 #include "tests/shared/bytes_of.h"
 #include "tests/shared/meshes.h"
 #include "tests/shared/scratch.h"
@@ -24,33 +25,19 @@ namespace {
 constexpr int kFrames = 8, kCut = 5;  // the frame that has another skin
 const std::string kBody = "/two_falls/a_body";
 
-// Of a square and two triangles.
+// With the square as one polygon, a corner that has no place in the image, and a place that none
+// has.
 TriMesh pyramid(const fs::path& texture) {
-    TriMesh mesh;
-    mesh.position = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.1, 0.2, 1.0 / 3}};
-    mesh.triangle = {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}};
+    TriMesh mesh = test::pyramid(texture);
     mesh.triangle_polygon = {0, 0, 1, 2};
-    mesh.uv = {{0.5, 0}, {1, 0.25}, {7, 7}};
-    mesh.triangle_uv = {{0, 1, 1}, {0, 1, 1}, {0, 1, 0}, {0, 1, -1}};
-    mesh.triangle_material = {0, 0, 0, 0};
-    mesh.material.resize(1);
-    mesh.material[0].name = "hide";
-    mesh.material[0].texture = texture;
-    smooth_by_crease_angle(mesh);
+    mesh.uv.emplace_back(7, 7);
+    mesh.triangle_uv[3][2] = -1;
     return mesh;
 }
 
-// With a face more, of a cut.
 TriMesh cut_pyramid(const fs::path& texture) {
-    TriMesh mesh = pyramid(texture);
-    mesh.triangle.push_back({2, 3, 4});
+    TriMesh mesh = test::with_cut(pyramid(texture));
     mesh.triangle_polygon.push_back(3);
-    mesh.triangle_uv.push_back({-1, -1, -1});
-    mesh.triangle_material.push_back(1);
-    mesh.material.push_back({"cut", {0.5, 0.25, 1}});
-    mesh.material.back().takes_colors = false;
-    mesh.material.back().clear = 0.75;
-    smooth_by_crease_angle(mesh);
     return mesh;
 }
 
